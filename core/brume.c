@@ -1,0 +1,213 @@
+/* SPDX-License-Identifier: MIT */
+/* Scene checks, the order of passes, defaults. */
+#include "brume_inner.h"
+
+/// Scene ///
+
+void brume_direction(int32_t out[3], int32_t azimuth, int32_t elevation)
+{
+    int32_t sine[2], cosine[2], angle[2] = {azimuth, elevation};
+    for (int i = 0; i < 2; i++) {
+        /* Degrees to turns: 2^16 / 360 = 182.0444..., modulo 2^32 */
+        uint32_t m = magnitude(angle[i]);
+        uint32_t turn = m * 182u + mul_hi_floor(m, 190887435u);
+        brume_sincos(angle[i] < 0 ? 0u - turn : turn, &sine[i], &cosine[i]);
+    }
+    out[0] = mul_both_signed_round(cosine[1], sine[0], 2);
+    out[1] = sine[1];
+    out[2] = mul_both_signed_round(cosine[1], cosine[0], 2);
+}
+
+/* A number as Q32.32, at most 2^64 - 1. */
+static uint64_t q32_of(struct brume_number n)
+{
+    uint32_t high = brume_number_floor(n, 0);
+    int32_t e = n.e + 32;
+    if (n.m == 0 || e <= -32)
+        return 0;
+    if (e >= 32)
+        return UINT64_MAX;
+    /* Below the point: what the high word's shift drops. */
+    uint32_t low = e <= 0 ? n.m >> (uint32_t)-e : n.m << (uint32_t)e;
+    return (uint64_t)high << 32 | low;
+}
+
+/* Optical depth of a path of `voxels` through the mean density should be
+ * `depth`: density_scale = depth / (mean * voxels). */
+static uint64_t default_scale(const struct brume_volume *v, uint32_t depth,
+                              uint32_t voxels)
+{
+    if (v->density_mean.m == 0)
+        return (uint64_t)1 << 32;
+    struct brume_number path =
+        brume_number_mul(v->density_mean, brume_number_of(voxels, 0));
+    return q32_of(brume_number_mul(brume_number_of(depth, 0),
+                                   brume_number_inverse(path)));
+}
+
+/* Camera: towards the middle of the box from azimuth 30, elevation 10, at 2.2
+ * times half its diagonal, where 40 degrees show a box from any side. */
+static void default_camera(struct brume_scene *s, const struct brume_volume *v,
+                           uint32_t diagonal)
+{
+    int32_t away[3];
+    uint32_t distance = diagonal * 72090u; /* 1.1, Q16.16 */
+    brume_direction(away, 30 << 16, 10 << 16);
+    for (int i = 0; i < 3; i++) {
+        uint32_t sum = (uint32_t)v->box_min[i] + v->box_max[i];
+        s->target[i] = (int32_t)(sum << 15);
+        s->eye[i] = s->target[i] + mul_signed_round(away[i], distance, 2);
+    }
+    s->up[1] = 1 << 30;
+    s->fov = 40u << 16;
+}
+
+/* Length of the box's diagonal in voxels, within 13 %, at least 1: longest
+ * side plus three eighths of the two others. */
+static uint32_t diagonal_of(const struct brume_volume *v)
+{
+    uint32_t sum = 0, most = 0;
+    for (int i = 0; i < 3; i++) {
+        uint32_t n = v->box_max[i] - v->box_min[i] + 1u;
+        most = n > most ? n : most;
+        sum += n;
+    }
+    return most + ((sum - most) * 3u >> 3);
+}
+
+/* Light rays that cross the box: 64 samples spread over the diagonal, or, when
+ * only doubling steps are compiled in, from one voxel on. */
+static void default_light(struct brume_scene *s, uint32_t diagonal)
+{
+    if (BRUME_WITH_UNIFORM) {
+        s->light = BRUME_UNIFORM;
+        s->light_samples = 64;
+        s->light_step = diagonal << 10;
+        if (s->light_step > BRUME_MAX_STEP)
+            s->light_step = BRUME_MAX_STEP;
+        return;
+    }
+    s->light = BRUME_LOG;
+    s->light_step = 0x10000u;
+    for (s->light_samples = 1; 1u << s->light_samples < diagonal;)
+        s->light_samples++;
+}
+
+void brume_scene_default(struct brume_scene *scene,
+                         const struct brume_volume *volume)
+{
+    static const struct brume_scene k_zero;
+    uint32_t diagonal = diagonal_of(volume);
+    struct brume_scene *s = scene;
+    *s = k_zero;
+    s->width = 640;
+    s->height = 480;
+    default_camera(s, volume, diagonal);
+    brume_direction(s->sun, -60 * 65536, 30 << 16);
+    s->density_scale = default_scale(volume, 16, diagonal);
+    s->light_density_scale = default_scale(volume, 7, diagonal);
+    s->albedo = 0x10000u;
+    /* a voxel; in large volumes 1/256 of the way, up to 4 voxels */
+    s->step = diagonal > 256 ? diagonal << 8 : 0x10000u;
+    s->step = s->step < 0x40000u ? s->step : 0x40000u;
+    default_light(s, diagonal);
+    s->min_transmittance = 655;
+    s->filter = BRUME_WITH_TRILINEAR ? BRUME_TRILINEAR : BRUME_NEAREST;
+    s->jitter = BRUME_JITTER_PRIMARY;
+    s->noise = BRUME_NOISE_IGN;
+    s->background[0] = 7864; /* 0.12, 0.25, 0.5: a clear sky */
+    s->background[1] = 16384;
+    s->background[2] = 32768;
+    s->output = BRUME_SRGB;
+    s->skip = true;
+}
+
+/// Frame ///
+
+static int check_scene(const struct brume_scene *s)
+{
+    if (s->width < 1 || s->width > BRUME_MAX_SIZE || s->height < 1 ||
+        s->height > BRUME_MAX_SIZE)
+        return BRUME_ERR_SIZE;
+    if (s->step < BRUME_MIN_STEP || s->step > BRUME_MAX_STEP ||
+        s->light_step < BRUME_MIN_STEP || s->light_step > BRUME_MAX_STEP)
+        return BRUME_ERR_STEP;
+    if (s->light > BRUME_NO_LIGHT ||
+        (s->light == BRUME_LOG && s->light_samples > BRUME_MAX_LOG_SAMPLES) ||
+        s->light_samples > BRUME_MAX_UNIFORM_SAMPLES)
+        return BRUME_ERR_SAMPLES;
+    if (s->filter > BRUME_TRILINEAR || s->jitter > BRUME_JITTER_BOTH ||
+        s->noise > BRUME_NOISE_BAYER8 || s->output > BRUME_SRGB ||
+        s->albedo > 0x10000u || s->min_transmittance > 0x10000u)
+        return BRUME_ERR_SCENE;
+    for (int c = 0; c < 3; c++)
+        if (s->background[c] > 0x10000u)
+            return BRUME_ERR_SCENE;
+    return BRUME_OK;
+}
+
+static void copy_scene(struct brume_frame *f, const struct brume_scene *s)
+{
+    uint32_t beyond = s->filter == BRUME_TRILINEAR ? 1 : 0;
+    f->width = s->width;
+    f->height = s->height;
+    f->frame = s->frame;
+    f->step = s->step;
+    f->albedo = s->albedo;
+    f->min_transmittance = s->min_transmittance << 15;
+    f->jitter = s->jitter;
+    f->noise = s->noise;
+    f->output = s->output;
+    for (int i = 0; i < 3; i++) {
+        f->background[i] = s->background[i];
+        /* A trilinear lookup reads one voxel beyond. */
+        f->limit[i] = (8u * f->volume->cell_count[i] - beyond) << 16;
+        f->sun[i] = s->sun[i];
+    }
+}
+
+int brume_begin_frame(struct brume_frame *frame,
+                      const struct brume_volume *volume,
+                      const struct brume_scene *scene)
+{
+    if (frame == NULL || volume == NULL || scene == NULL ||
+        volume->cells == NULL)
+        return BRUME_ERR_NULL;
+    int err = check_scene(scene);
+    if (err)
+        return err;
+    frame->volume = volume;
+    copy_scene(frame, scene);
+    err = brume_camera_begin(frame, scene);
+    if (err)
+        return err;
+    if (!brume_normalise(frame->sun))
+        return BRUME_ERR_SUN;
+    return brume_march_begin(frame, scene);
+}
+
+/// Pixels ///
+
+int brume_render_rect(const struct brume_frame *frame, unsigned x, unsigned y,
+                      unsigned w, unsigned h, int pixel_format, void *dst,
+                      size_t stride)
+{
+    struct brume_radiance row[BRUME_SPAN];
+    unsigned bytes = brume_pixel_bytes(pixel_format);
+    if (frame == NULL || dst == NULL)
+        return BRUME_ERR_NULL;
+    if (bytes == 0 || x > frame->width || w > frame->width - x ||
+        y > frame->height || h > frame->height - y ||
+        (h > 1 && stride < (size_t)w * bytes))
+        return BRUME_ERR_RECT;
+    for (unsigned j = 0; j < h; j++) {
+        uint8_t *to = (uint8_t *)dst + j * stride;
+        for (unsigned i = 0; i < w; i += BRUME_SPAN) {
+            unsigned n = w - i < BRUME_SPAN ? w - i : BRUME_SPAN;
+            brume_march_span(frame, x + i, y + j, n, row);
+            brume_pack_span(frame, row, n, pixel_format,
+                            to + (size_t)i * bytes);
+        }
+    }
+    return BRUME_OK;
+}

@@ -1,0 +1,349 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * brume: clouds, smoke and fog from baked OpenVDB data, in integers.
+ *
+ * CONVENTIONS
+ *
+ * Spaces   Everything here is in pool space: the volume's voxels, the centre
+ *          of the first one at (0,0,0), right-handed axes parallel to index
+ *          space. docs/SPEC.md says how it hangs on index and world space.
+ * Camera   Pinhole. Row 0 is on top, a pixel's centre at (x+1/2, y+1/2).
+ * Light    One sun at infinity; `sun` points towards it.
+ * Samples  On a lattice fixed by the eye, t_k = (k + jitter) * step, k >= 0.
+ *          So leaping over empty cells cannot change a pixel.
+ * Fixed    Qm.n is an integer with n fraction bits (and m before them; the
+ * point    sign included where the type has one). In this header:
+ *
+ *   Q16.16 int32_t   positions, lengths in voxels; uint32_t steps, degrees
+ *   Q2.30  int32_t   unit vectors
+ *   Q0.16  uint32_t  0 .. 65536, both ends included: albedo, transmittance,
+ *                    grey levels
+ *   Q32.32 uint64_t  densities and extinction per unit density per voxel
+ *
+ * Memory   The caller owns all of it. The library has no heap, no writable
+ *          statics, no recursion, and needs about 500 bytes of stack.
+ *          Structs may be copied; they point only at the asset (brume_volume)
+ *          and at the volume (brume_frame).
+ * Threads  Functions that take pointers to const may run at the same time:
+ *          one brume_frame serves any number of brume_render_rect.
+ * Errors   Functions returning int give BRUME_OK (0) or a negative
+ *          enum brume_error. Nothing else can fail.
+ */
+#ifndef BRUME_H
+#define BRUME_H
+
+#ifdef BRUME_CONFIG /* -DBRUME_CONFIG='"my_config.h"' overrides what follows \
+                     */
+#include BRUME_CONFIG
+#endif
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// Version ///
+
+/* Major: sources may need changes. Minor: additions. Patch: neither. */
+#define BRUME_VERSION_MAJOR 0
+#define BRUME_VERSION_MINOR 1
+#define BRUME_VERSION_PATCH 0
+
+/// Compile-time choices ///
+
+/* What is compiled in, 1 or 0. Each costs code only: about 0.4 to 0.8 KiB of
+ * Thumb-2 per combination of format, lookup and light. A scene that asks for
+ * what is missing gets BRUME_ERR_FEATURE; what it does render is the same
+ * image as with everything compiled in. */
+#ifndef BRUME_WITH_U8
+#define BRUME_WITH_U8 1
+#endif
+#ifndef BRUME_WITH_U8R
+#define BRUME_WITH_U8R 1
+#endif
+#ifndef BRUME_WITH_U4R
+#define BRUME_WITH_U4R 1
+#endif
+#ifndef BRUME_WITH_APRON /* assets whose bricks are stored with an apron */
+#define BRUME_WITH_APRON 1
+#endif
+#ifndef BRUME_WITH_NEAREST
+#define BRUME_WITH_NEAREST 1
+#endif
+#ifndef BRUME_WITH_TRILINEAR
+#define BRUME_WITH_TRILINEAR 1
+#endif
+#ifndef BRUME_WITH_UNIFORM /* light = uniform; log is always there */
+#define BRUME_WITH_UNIFORM 1
+#endif
+#ifndef BRUME_WITH_MAX_DENSITY /* max_density below the asset's maximum */
+#define BRUME_WITH_MAX_DENSITY 1
+#endif
+
+/// Limits ///
+
+#define BRUME_MAX_SIZE 16384     /* pixels per side of a frame */
+#define BRUME_MAX_LOG_SAMPLES 16 /* light samples of doubling distance */
+#define BRUME_MAX_UNIFORM_SAMPLES 4096
+#define BRUME_MIN_STEP 0x00001000u /* 1/16 voxel, Q16.16 */
+#define BRUME_MAX_STEP 0x01000000u /* 256 voxels, Q16.16 */
+#define BRUME_MIN_FOV 0x00010000u  /* 1 degree, Q16.16 */
+#define BRUME_MAX_FOV 0x00a00000u  /* 160 degrees, Q16.16 */
+/* |eye| and |target| per axis, Q16.16: 32766 voxels. A ray that enters the
+ * pool farther than 65000 voxels from the eye misses it. */
+#define BRUME_MAX_COORDINATE 0x7ffe0000
+
+/// Asset format (docs/SPEC.md is the definition) ///
+
+#define BRUME_MAGIC 0x454d5242u /* "BRME", read little-endian */
+#define BRUME_ASSET_MAJOR 1
+#define BRUME_ASSET_MINOR 0
+#define BRUME_HEADER_BYTES 176u
+#define BRUME_SECTION_BYTES 16u /* one entry of the section table */
+#define BRUME_SECTION_ALIGN 64u
+#define BRUME_MAX_SECTIONS 32u
+#define BRUME_MAX_CELLS 4095u /* per axis */
+#define BRUME_SECTION_CELL 0x4c4c4543u
+#define BRUME_SECTION_POOL 0x4c4f4f50u
+#define BRUME_SECTION_RNGE 0x45474e52u
+#define BRUME_SECTION_NAME 0x454d414eu
+#define BRUME_CELL_EMPTY 0x80000000u /* set: bits 0..7 are a distance */
+#define BRUME_RANGE_TOP 65280u       /* largest base + top * scale */
+
+/* Byte offsets of the header's fields. */
+enum {
+    BRUME_OFF_MAGIC = 0,
+    BRUME_OFF_MAJOR = 4,
+    BRUME_OFF_MINOR = 6,
+    BRUME_OFF_SIZE = 8,
+    BRUME_OFF_CRC = 12,
+    BRUME_OFF_FORMAT = 16,
+    BRUME_OFF_SIDE = 17,
+    BRUME_OFF_SECTIONS = 18,
+    BRUME_OFF_CELLS = 20,
+    BRUME_OFF_ORIGIN = 28,
+    BRUME_OFF_BOX_MIN = 40,
+    BRUME_OFF_BOX_MAX = 46,
+    BRUME_OFF_BRICKS = 52,
+    BRUME_OFF_DENSITY_MAX = 56,
+    BRUME_OFF_DENSITY_MEAN = 64,
+    BRUME_OFF_VOXELS = 72,
+    BRUME_OFF_WORLD = 80
+};
+
+enum brume_format { BRUME_U8 = 1, BRUME_U8R = 2, BRUME_U4R = 3 };
+
+/// Errors ///
+
+enum brume_error {
+    BRUME_OK = 0,
+    BRUME_ERR_NULL = -1,      /* a pointer is NULL */
+    BRUME_ERR_ALIGN = -2,     /* asset not on a 4-byte boundary */
+    BRUME_ERR_TRUNCATED = -3, /* fewer bytes than the header says */
+    BRUME_ERR_MAGIC = -4,     /* not a brume asset */
+    BRUME_ERR_VERSION = -5,   /* an asset of another major version */
+    BRUME_ERR_CRC = -6,       /* checksum does not match */
+    BRUME_ERR_HEADER = -7,    /* a header field is out of range */
+    BRUME_ERR_SECTION = -8,   /* section table: bounds, missing, twice */
+    BRUME_ERR_CELL = -9,      /* a cell names no brick, or a bad word */
+    BRUME_ERR_DISTANCE = -10, /* a cell's distance could leap too far */
+    BRUME_ERR_RANGE = -11,    /* a brick's range exceeds the format */
+    BRUME_ERR_FEATURE = -12,  /* needs what was compiled out */
+    BRUME_ERR_SIZE = -13,     /* frame size out of range */
+    BRUME_ERR_CAMERA = -14,   /* eye, target or fov out of range */
+    BRUME_ERR_SUN = -15,      /* sun is no direction */
+    BRUME_ERR_STEP = -16,     /* step or light_step out of range */
+    BRUME_ERR_SAMPLES = -17,  /* light_samples out of range */
+    BRUME_ERR_SCENE = -18,    /* another scene field out of range */
+    BRUME_ERR_RECT = -19      /* rectangle not inside the frame, or stride */
+};
+
+/* One line of English for an error code; never NULL. */
+const char *brume_error_text(int error);
+
+/// Volume ///
+
+/* Words of the asset, which lie in memory of any declared type. */
+#if defined(__GNUC__)
+typedef uint32_t __attribute__((__may_alias__)) brume_word_t;
+#else
+typedef uint32_t brume_word_t;
+#endif
+
+/* value = m * 2^e, with m = 0 or m >= 2^31; -1024 <= e <= 991. */
+struct brume_number {
+    uint32_t m;
+    int32_t e;
+};
+
+/* A checked view of an asset, which must stay in place. Read-only. */
+struct brume_volume {
+    const brume_word_t *cells;  /* cx * cy * cz, x fastest */
+    const uint8_t *pool;        /* bricks */
+    const brume_word_t *ranges; /* one per brick, or NULL (u8) */
+    const uint8_t *asset;       /* the blob */
+    uint32_t size;              /* its bytes, as its header says */
+    uint32_t bricks;
+    uint32_t brick_bytes;
+    uint32_t voxels;                  /* non-zero ones */
+    uint16_t cell_count[3];           /* cx cy cz */
+    uint16_t box_min[3], box_max[3];  /* non-zero voxels, inclusive */
+    struct brume_number density_max;  /* what the largest code means */
+    struct brume_number density_mean; /* of the non-zero voxels */
+    uint8_t format;                   /* enum brume_format */
+    uint8_t side;                     /* 8, or 9 with an apron */
+};
+
+enum brume_open_flags {
+    /* Do not compare the checksum (a tenth of a second per megabyte on a
+     * small core). All that guards memory is checked all the same. */
+    BRUME_OPEN_NO_CRC = 1
+};
+
+/* Checks `size` bytes at `asset` (4-byte aligned) for all that rendering will
+ * follow, and fills *volume. Time: a pass over the bytes for the checksum, and
+ * one over the cells. After BRUME_OK no lookup can leave the asset, whatever
+ * its bytes. On an error *volume is all zero and must not be used. */
+int brume_volume_open(struct brume_volume *volume, const void *asset,
+                      size_t size, unsigned flags);
+
+/* CRC-32 (polynomial 0xedb88320 reflected, as in PNG) of bytes 16 .. size-1
+ * of an asset: what its header must hold at offset 12. size >= 16. */
+uint32_t brume_asset_crc(const void *asset, uint32_t size);
+
+/// Scene ///
+
+enum brume_filter { BRUME_NEAREST = 0, BRUME_TRILINEAR = 1 };
+enum brume_light { BRUME_LOG = 0, BRUME_UNIFORM = 1, BRUME_NO_LIGHT = 2 };
+enum brume_jitter { /* bits: what is jittered */
+                    BRUME_JITTER_NONE = 0,
+                    BRUME_JITTER_PRIMARY = 1,
+                    BRUME_JITTER_LIGHT = 2,
+                    BRUME_JITTER_BOTH = 3
+};
+enum brume_noise {
+    BRUME_NOISE_NONE = 0,
+    BRUME_NOISE_WHITE = 1, /* integer hash of pixel and frame */
+    BRUME_NOISE_IGN = 2,   /* interleaved gradient noise */
+    BRUME_NOISE_BAYER8 = 3 /* ordered 8x8, the same in every frame */
+};
+enum brume_output { BRUME_LINEAR = 0, BRUME_SRGB = 1 };
+
+/* A Q32.32 constant from a non-negative number below 2^32. The compiler
+ * folds it, so firmware stays free of floating point. */
+#define BRUME_Q32(x) ((uint64_t)((x)*4294967296.0))
+#define BRUME_Q16(x) ((int32_t)((x)*65536.0 + ((x) < 0 ? -0.5 : 0.5)))
+
+/* What to draw. Fill with brume_scene_default, then change what you like. */
+struct brume_scene {
+    uint16_t width, height; /* pixels, 1 .. BRUME_MAX_SIZE */
+    uint32_t frame;         /* frame number: moves the noise */
+
+    int32_t eye[3], target[3]; /* Q16.16; must differ */
+    int32_t up[3];             /* any length; see brume_begin_frame */
+    uint32_t fov;              /* vertical, degrees, Q16.16 */
+
+    int32_t sun[3];               /* towards the sun, any length > 0 */
+    uint64_t density_scale;       /* Q32.32, extinction on view rays */
+    uint64_t light_density_scale; /* Q32.32, extinction on light rays */
+    uint64_t min_density;         /* Q32.32; not above: no sample */
+    uint64_t max_density;         /* Q32.32; clamps voxels; 0: none */
+    uint32_t albedo;              /* Q0.16 */
+    uint32_t step;                /* Q16.16 voxels */
+    uint32_t light_step;          /* Q16.16 voxels */
+    uint32_t min_transmittance;   /* Q0.16: below, the ray ends */
+    uint32_t background[3];       /* Q0.16 red, green, blue */
+
+    uint16_t light_samples; /* 0 .. limit of the kind of light */
+    uint8_t filter;         /* enum brume_filter */
+    uint8_t light;          /* enum brume_light */
+    uint8_t jitter;         /* enum brume_jitter */
+    uint8_t noise;          /* enum brume_noise */
+    uint8_t output;         /* enum brume_output */
+    bool skip;              /* leap over empty cells; same image */
+};
+
+/* A scene that shows any volume: 640x480, camera on the box of its non-zero
+ * voxels, sun from the side, extinction from its mean density, a blue sky,
+ * sRGB out; trilinear and uniform light where these are compiled in. */
+void brume_scene_default(struct brume_scene *scene,
+                         const struct brume_volume *volume);
+
+/* Unit vector Q2.30 of an azimuth and an elevation, Q16.16 degrees, |.| <=
+ * 32767: (cos e sin a, sin e, cos e cos a). Error below 2^-26 per axis. */
+void brume_direction(int32_t out[3], int32_t azimuth, int32_t elevation);
+
+/// Frame ///
+
+/* All that is computed once a frame. No user-visible fields. */
+struct brume_frame {
+    const struct brume_volume *volume;
+    /* Loss of transmittance per sample, Q0.32, by 8-bit density; or two
+     * halves of transmittance by the bytes of a 16-bit density. */
+    uint32_t table[512];
+    int32_t eye[3];             /* Q16.16, plus the lookup's bias */
+    int32_t ahead[3];           /* ray of the middle, Q1.31, < 1 long */
+    int32_t per_x[3], per_y[3]; /* its change per half pixel, Q1.31 */
+    uint32_t limit[3];          /* positions inside are below, Q16.16 */
+    int32_t sun[3];             /* Q2.30, unit */
+    int32_t light_move[3];      /* uniform light, Q16.16 */
+    uint32_t light_inverse[3];  /* 2^32 / |light_move| */
+    uint32_t leap_margin;       /* Q16.16, see leap in brume_march.c */
+    uint32_t max_leap;          /* samples: all ones, or 1 */
+    uint32_t min_density;       /* in codes of the kernel */
+    uint32_t max_density;       /* in 16-bit codes */
+    uint32_t tau_m, tau_shift;  /* light sum to optical depth */
+    uint32_t tau_limit;         /* larger sums are black */
+    uint32_t min_transmittance; /* Q1.31 */
+    uint32_t albedo;            /* Q0.16 */
+    uint32_t background[3];     /* Q0.16 */
+    uint32_t step, light_step;  /* Q16.16 */
+    uint32_t frame;
+    uint16_t width, height;
+    uint16_t light_samples;
+    uint8_t kernel; /* which march, see brume_march.c */
+    uint8_t light, jitter, noise, output;
+};
+
+/* Checks the scene, and prepares *frame to render it. The volume must outlive
+ * the frame. An `up` that is zero or parallel to the view is replaced by +Z,
+ * or by +Y when that is parallel too.
+ * Time: like that of about 100 pixels. Returns BRUME_OK, or the error of the
+ * first bad field; then *frame must not be used. */
+int brume_begin_frame(struct brume_frame *frame,
+                      const struct brume_volume *volume,
+                      const struct brume_scene *scene);
+
+/// Pixels ///
+
+enum brume_pixel_format {
+    BRUME_L8 = 0,             /* 1 byte: grey */
+    BRUME_RGB888 = 1,         /* 3 bytes: red, green, blue */
+    BRUME_RGB565 = 2,         /* 2 bytes, native word: rrrrrggg gggbbbbb */
+    BRUME_RGB565_SWAPPED = 3, /* the same, bytes swapped (SPI panels) */
+    BRUME_XRGB8888 = 4,       /* 4 bytes, native word 0x00rrggbb */
+    BRUME_L16 = 5,            /* 2 bytes, native word: grey, for measuring */
+    BRUME_RGB161616 = 6       /* 3 native words of 16 bits */
+};
+
+/* Bytes per pixel of a format, 0 when there is no such format. */
+unsigned brume_pixel_bytes(int pixel_format);
+
+/* Renders the w x h pixels at (x, y) of the frame into dst, whose first byte
+ * is pixel (x, y) and whose rows are `stride` bytes apart. dst must be aligned
+ * for the format's word. Any cutting of a frame into rectangles gives the same
+ * pixels. L8 and L16 take the background's red. Returns BRUME_OK (also for
+ * empty rectangles), BRUME_ERR_NULL or BRUME_ERR_RECT; then dst is untouched.
+ */
+int brume_render_rect(const struct brume_frame *frame, unsigned x, unsigned y,
+                      unsigned w, unsigned h, int pixel_format, void *dst,
+                      size_t stride);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

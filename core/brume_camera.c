@@ -1,0 +1,269 @@
+/* SPDX-License-Identifier: MIT */
+/* From the scene's camera to the lattice of each pixel's ray. */
+#include "brume_inner.h"
+
+/* A ray whose entry into the pool is farther than this misses, Q16.16. */
+#define FAR_ENTRY 0xfde80000u /* 65000 voxels */
+
+/// Camera ///
+
+static void cross(int32_t out[3], const int32_t a[3], const int32_t b[3])
+{
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        out[i] = mul_both_signed_round(a[j], b[k], 2) -
+                 mul_both_signed_round(a[k], b[j], 2);
+    }
+}
+
+/* The unit vector right of `ahead`; false when up is parallel to it (to
+ * 2^-16 radians) or zero. */
+static bool right_of(int32_t right[3], const int32_t ahead[3],
+                     const int32_t up[3])
+{
+    int32_t unit[3] = {up[0], up[1], up[2]};
+    if (!brume_normalise(unit))
+        return false;
+    cross(right, ahead, unit);
+    if ((magnitude(right[0]) | magnitude(right[1]) | magnitude(right[2])) <
+        1u << 14)
+        return false;
+    return brume_normalise(right);
+}
+
+static bool in_bounds(const int32_t p[3])
+{
+    for (int i = 0; i < 3; i++)
+        if (magnitude(p[i]) > BRUME_MAX_COORDINATE)
+            return false;
+    return true;
+}
+
+/* Unit vector from a to b; false when they are equal. */
+static bool unit_between(int32_t out[3], const int32_t a[3], const int32_t b[3])
+{
+    int64_t d[3];
+    bool wide = false;
+    for (int i = 0; i < 3; i++) {
+        d[i] = (int64_t)b[i] - a[i]; /* |d| < 2^32 */
+        wide = wide || d[i] > INT32_MAX || d[i] < -INT32_MAX;
+    }
+    for (int i = 0; i < 3; i++)
+        out[i] = (int32_t)(wide ? d[i] / 2 : d[i]);
+    return brume_normalise(out);
+}
+
+/* out = v * k: Q2.30 times a number below 1 -> Q1.31. */
+static void scale(int32_t out[3], const int32_t v[3], struct brume_number k)
+{
+    /* v m 2^(e+1) = (v m / 2^31) / 2^(-32-e), and e <= -32. */
+    uint32_t down = (uint32_t)(-32 - k.e);
+    BRUME_CHECK(k.e <= -32);
+    for (int i = 0; i < 3; i++) {
+        uint32_t r = magnitude(mul_signed_round(v[i], k.m, 1));
+        if (down > 0)
+            r = down > 31 ? 0 : ((r >> (down - 1)) + 1u) >> 1;
+        out[i] = with_sign(r, v[i] < 0);
+    }
+}
+
+/* The ray of a pixel, any length: with a half field of view of angle f,
+ *   cos f ahead + sin f (u right + v up) / h,  u = 2x+1-w,  v = h-1-2y,
+ * all divided by a bound of its length, so that it stays below 1. */
+static void project(struct brume_frame *f, const int32_t ahead[3],
+                    const int32_t right[3], uint32_t fov)
+{
+    uint32_t w = f->width, h = f->height;
+    int32_t sine, cosine, up[3];
+    /* fov / 2 in turns: times 2^16 / 720 = 91.0222... */
+    brume_sincos(fov * 91u + mul_hi_floor(fov, 95443718u), &sine, &cosine);
+    uint32_t s = (uint32_t)sine, c = (uint32_t)cosine;
+    /* (c h + s h + s w) 2^14 in integers, rounded up: < 2^31 */
+    uint32_t bound = ((c >> 16) + 1u) * h + ((s >> 16) + 1u) * (h + w);
+    struct brume_number inverse =
+        brume_number_inverse(brume_number_of(bound, -14));
+    struct brume_number per_pixel =
+        brume_number_mul(brume_number_of(s, -30), inverse);
+    struct brume_number centre = brume_number_mul(
+        brume_number_mul(brume_number_of(c, -30), brume_number_of(h, 0)),
+        inverse);
+    cross(up, right, ahead);
+    scale(f->ahead, ahead, centre);
+    scale(f->per_x, right, per_pixel);
+    scale(f->per_y, up, per_pixel);
+}
+
+int brume_camera_begin(struct brume_frame *frame,
+                       const struct brume_scene *scene)
+{
+    static const int32_t k_z[3] = {0, 0, 1}, k_y[3] = {0, 1, 0};
+    int32_t ahead[3], right[3];
+    if (!in_bounds(scene->eye) || !in_bounds(scene->target) ||
+        scene->fov < BRUME_MIN_FOV || scene->fov > BRUME_MAX_FOV ||
+        !unit_between(ahead, scene->eye, scene->target))
+        return BRUME_ERR_CAMERA;
+    if (!right_of(right, ahead, scene->up) && !right_of(right, ahead, k_z))
+        right_of(right, ahead, k_y);
+    project(frame, ahead, right, scene->fov);
+    int32_t bias = scene->filter == BRUME_TRILINEAR ? 0x80 : 0x8000;
+    for (int i = 0; i < 3; i++)
+        frame->eye[i] = scene->eye[i] + bias;
+    return BRUME_OK;
+}
+
+/// Rays ///
+
+uint32_t brume_inverse_of_move(int32_t move)
+{
+    return move == 0 ? 0xffffffffu : 0xffffffffu / magnitude(move);
+}
+
+/* distance / speed: Q16.16 / Q2.30 -> Q16.16, all ones when it is more. */
+static uint32_t time_of(uint32_t distance, uint32_t speed)
+{
+    unsigned shift = 0; /* speed <= 2^30: shift >= 1 */
+    do {
+        speed <<= 1;
+        shift++;
+    } while (speed < 0x80000000u);
+    /* distance 2^30 2^shift / speed = distance r 2^(shift-33) */
+    uint32_t r = brume_reciprocal(speed);
+    uint32_t high = mul_hi_floor(distance, r), low = distance * r;
+    if (shift > 1 && high >> (33 - shift) != 0)
+        return 0xffffffffu;
+    return shift > 1 ? high << (shift - 1) | low >> (33 - shift) : high;
+}
+
+/* The times within which the ray can be in the pool; false when never. */
+static bool clip(const struct brume_frame *f, const int32_t unit[3],
+                 uint32_t *t_in, uint32_t *t_out)
+{
+    *t_in = 0;
+    *t_out = 0xffffffffu;
+    for (int i = 0; i < 3; i++) {
+        bool below = f->eye[i] < 0;
+        bool above = !below && (uint32_t)f->eye[i] >= f->limit[i];
+        if ((below && unit[i] <= 0) || (above && unit[i] >= 0))
+            return false;
+        if (unit[i] == 0)
+            continue;
+        /* Distances to the planes 0 and limit. */
+        uint32_t to_low = magnitude(f->eye[i]);
+        uint32_t to_high = f->limit[i] - (uint32_t)f->eye[i];
+        if (above)
+            to_high = 0u - to_high;
+        uint32_t speed = magnitude(unit[i]);
+        uint32_t t = time_of(unit[i] > 0 ? to_high : to_low, speed);
+        if (t < *t_out)
+            *t_out = t;
+        if (below || above) {
+            t = time_of(below ? to_low : to_high, speed);
+            if (t > *t_in)
+                *t_in = t;
+        }
+    }
+    /* A ray along a face may seem to leave before it enters, by rounding. */
+    return *t_in < FAR_ENTRY && (*t_in <= *t_out || *t_in - *t_out < 16u);
+}
+
+static bool inside(const struct brume_frame *f, const uint32_t p[3])
+{
+    return p[0] < f->limit[0] && p[1] < f->limit[1] && p[2] < f->limit[2];
+}
+
+/* To the first lattice point in the pool: near `t_in`, but decided by the
+ * positions themselves, so that later code need not look. Positions are true
+ * modulo 2^32 and within a few steps of the pool, so none wraps into it. */
+static bool enter(struct brume_ray *ray, const struct brume_frame *f,
+                  const int32_t unit[3], uint32_t jitter, uint32_t t_in,
+                  uint32_t t_out)
+{
+    uint32_t k = t_in / f->step;
+    if (k > 0)
+        k--;
+    uint32_t t = k * f->step + mul_hi_floor(jitter << 16, f->step);
+    for (int i = 0; i < 3; i++) {
+        uint32_t m = magnitude(unit[i]);
+        /* Q30 * Q16 -> Q16, rounded */
+        uint32_t way =
+            (mul_hi_floor(m, t) << 2 | (m * t) >> 30) + ((m * t) >> 29 & 1u);
+        ray->position[i] = (uint32_t)f->eye[i] + (unit[i] < 0 ? 0u - way : way);
+        ray->move[i] = mul_signed_round(unit[i], f->step, 2);
+    }
+    uint32_t tries = t_out > t ? (t_out - t) / f->step + 2u : 2u;
+    for (; !inside(f, ray->position); tries--) {
+        if (tries == 0)
+            return false;
+        for (int i = 0; i < 3; i++)
+            ray->position[i] += (uint32_t)ray->move[i];
+    }
+    return true;
+}
+
+/* Lattice points from the position to the pool's end: exact. */
+static uint32_t count_inside(const struct brume_ray *ray,
+                             const struct brume_frame *f)
+{
+    uint32_t count = 0xffffffffu;
+    for (int i = 0; i < 3; i++) {
+        uint32_t move = magnitude(ray->move[i]);
+        if (move == 0)
+            continue;
+        uint32_t room = ray->move[i] < 0 ? ray->position[i]
+                                         : f->limit[i] - 1u - ray->position[i];
+        /* The product is the quotient or one less. */
+        uint32_t n = mul_hi_floor(room, ray->inverse[i]);
+        if ((n + 1u) * move <= room) /* < 2^31 + 2^25 */
+            n++;
+        if (n < count)
+            count = n;
+    }
+    return count + 1u;
+}
+
+static void begin_light(struct brume_ray *ray, const struct brume_frame *f,
+                        uint32_t jitter)
+{
+    bool uniform = f->light == BRUME_UNIFORM;
+    uint32_t first =
+        uniform ? f->light_step >> 1
+                : f->light_step + mul_hi_floor(jitter << 16, f->light_step);
+    uint32_t most = 0, n = f->light_samples;
+    for (int i = 0; i < 3; i++) {
+        ray->light[i] = mul_signed_round(f->sun[i], first, 2);
+        uint32_t m = magnitude(ray->light[i]);
+        most = m > most ? m : most;
+    }
+    /* A doubled distance of 32768 voxels on any axis is out of the pool,
+     * and would not fit the word. */
+    if (!uniform)
+        while (n > 0 && most >> (32 - n) != 0)
+            n--;
+    ray->light_samples = n;
+}
+
+bool brume_ray_begin(struct brume_ray *ray, const struct brume_frame *frame,
+                     uint32_t x, uint32_t y)
+{
+    const struct brume_frame *f = frame;
+    int32_t u = (int32_t)(2u * x + 1u) - (int32_t)f->width;
+    int32_t v = (int32_t)f->height - (int32_t)(2u * y + 1u);
+    int32_t unit[3];
+    uint32_t jitter[2], t_in, t_out;
+    for (int i = 0; i < 3; i++)
+        unit[i] = f->ahead[i] + u * f->per_x[i] + v * f->per_y[i];
+    brume_normalise(unit);
+    if (!clip(f, unit, &t_in, &t_out))
+        return false;
+    for (uint32_t c = 0; c < 2; c++)
+        jitter[c] = f->jitter >> c & 1u
+                        ? brume_noise_value(f->noise, x, y, f->frame, c)
+                        : 0;
+    if (!enter(ray, f, unit, jitter[0], t_in, t_out))
+        return false;
+    for (int i = 0; i < 3; i++)
+        ray->inverse[i] = brume_inverse_of_move(ray->move[i]);
+    ray->count = count_inside(ray, f);
+    begin_light(ray, f, jitter[1]);
+    return true;
+}
