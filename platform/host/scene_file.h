@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Scenes as text: `key = value` lines, `#` comments; and --set key=value.
+ *
+ * Errors: as in image.h; messages start with file:line or `--set`.
+ */
+#ifndef BRUME_HOST_SCENE_FILE_H
+#define BRUME_HOST_SCENE_FILE_H
+
+#include <stdio.h>
+
+#include "volume_file.h"
+
+enum scene_key {
+    SCENE_SIZE,
+    SCENE_EYE,
+    SCENE_TARGET,
+    SCENE_UP,
+    SCENE_FOV,
+    SCENE_SUN,
+    SCENE_DENSITY_SCALE,
+    SCENE_LIGHT_DENSITY_SCALE,
+    SCENE_ALBEDO,
+    SCENE_STEP,
+    SCENE_MIN_DENSITY,
+    SCENE_MIN_TRANSMITTANCE,
+    SCENE_MAX_DENSITY,
+    SCENE_FILTER,
+    SCENE_LIGHT,
+    SCENE_LIGHT_SAMPLES,
+    SCENE_LIGHT_STEP,
+    SCENE_JITTER,
+    SCENE_NOISE,
+    SCENE_FRAME,
+    SCENE_BACKGROUND,
+    SCENE_OUTPUT,
+    SCENE_SKIP,
+    SCENE_KEYS
+};
+
+#define SCENE_LINE_SIZE 512 /* of a `key = value`, with its end */
+#define SCENE_WHERE_SIZE 300
+
+/* What was said, in the text's own units. Starts all zero. */
+struct scene_settings {
+    bool set[SCENE_KEYS];
+    double value[SCENE_KEYS][3];
+    char where[SCENE_KEYS][SCENE_WHERE_SIZE]; /* file:line, cut to fit */
+};
+
+/* One `key = value`; `where` is for messages. */
+int scene_set(struct scene_settings *settings, const char *text,
+              const char *where, char *err, size_t err_size);
+int scene_read(struct scene_settings *settings, const char *path, char *err,
+               size_t err_size);
+
+/* The core's scene: defaults that suit the volume, then what was set. */
+int scene_apply(const struct scene_settings *settings,
+                const struct volume_file *file, struct brume_scene *scene,
+                char *err, size_t err_size);
+
+/* A line per key: its values, range and default. */
+void scene_print_keys(FILE *to);
+
+/* The scene as text that scene_read takes back. */
+void scene_print(FILE *to, const struct brume_scene *scene,
+                 const struct volume_file *file);
+
+#endif
