@@ -45,25 +45,62 @@ static uint64_t default_scale(const struct brume_volume *v, uint32_t depth,
                                    brume_number_inverse(path)));
 }
 
-/* Camera: towards the middle of the box from azimuth 30, elevation 10, at 2.2
- * times half its diagonal, where 40 degrees show a box from any side. */
-static void default_camera(struct brume_scene *s, const struct brume_volume *v,
-                           uint32_t diagonal)
+/* How far from the middle of the box, in voxels, the camera must be for all
+ * corners to be seen within 40 degrees in a 4:3 frame, and a little more. A
+ * corner at (x, y) across and z towards the camera needs
+ *     z + |y| / tan 20,  z + |x| / (4/3 tan 20). */
+static uint32_t framing_distance(const struct brume_volume *v)
+{
+    /* Axes of the camera at azimuth 30, elevation 10, in Q15. */
+    static const int32_t k_right[3] = {28378, 0, -16384};
+    static const int32_t k_up[3] = {-2845, 32270, -4928};
+    static const int32_t k_towards[3] = {16135, 5690, 27947};
+    uint32_t most = 0;
+    for (unsigned corner = 0; corner < 8; corner++) {
+        int32_t x = 0, y = 0, z = 0; /* < 2^30: three of 2^14 * 2^15 */
+        for (int i = 0; i < 3; i++) {
+            int32_t half = (v->box_max[i] - v->box_min[i] + 2) / 2;
+            half = corner >> i & 1u ? half : -half;
+            x += half * k_right[i];
+            y += half * k_up[i];
+            z += half * k_towards[i];
+        }
+        /* voxels; 2.06 and 2.75 in Q8 */
+        uint32_t across = (magnitude(x) >> 15) * 528u >> 8;
+        uint32_t along = (magnitude(y) >> 15) * 704u >> 8;
+        uint32_t wide = across > along ? across : along;
+        if (z < 0) /* the corner opposite needs more */
+            continue;
+        wide += (uint32_t)z >> 15;
+        most = wide > most ? wide : most;
+    }
+    return most + (most >> 4) + 2u;
+}
+
+/* Camera: towards the middle of the box from azimuth 30, elevation 10, at the
+ * distance that frames it, or as near to that as the eye's limits allow. */
+static void default_camera(struct brume_scene *s, const struct brume_volume *v)
 {
     int32_t away[3];
-    uint32_t distance = diagonal * 72090u; /* 1.1, Q16.16 */
+    uint32_t distance = framing_distance(v);
     brume_direction(away, 30 << 16, 10 << 16);
-    for (int i = 0; i < 3; i++) {
-        uint32_t sum = (uint32_t)v->box_min[i] + v->box_max[i];
-        s->target[i] = (int32_t)(sum << 15);
-        s->eye[i] = s->target[i] + mul_signed_round(away[i], distance, 2);
+    for (int i = 0; i < 3; i++)
+        s->target[i] = (v->box_min[i] + v->box_max[i]) * 32768;
+    for (int i = 0; i < 3; i++) { /* all components of `away` are positive */
+        uint32_t room = (uint32_t)(BRUME_MAX_COORDINATE - s->target[i]);
+        /* (room / 2^16) / (away / 2^30), away rounded up */
+        uint32_t most = room / (((uint32_t)away[i] >> 14) + 1u);
+        distance = distance < most ? distance : most;
     }
+    for (int i = 0; i < 3; i++)
+        s->eye[i] = s->target[i] +
+                    mul_signed_round(away[i], distance << 16, 2);
     s->up[1] = 1 << 30;
     s->fov = 40u << 16;
 }
 
-/* Length of the box's diagonal in voxels, within 13 %, at least 1: longest
- * side plus three eighths of the two others. */
+/* Length of the box's diagonal in voxels, up to 17 % more: longest side plus
+ * three eighths of the two others, rounded up. */
 static uint32_t diagonal_of(const struct brume_volume *v)
 {
     uint32_t sum = 0, most = 0;
@@ -72,7 +109,7 @@ static uint32_t diagonal_of(const struct brume_volume *v)
         most = n > most ? n : most;
         sum += n;
     }
-    return most + ((sum - most) * 3u >> 3);
+    return most + (((sum - most) * 3u + 7u) >> 3);
 }
 
 /* Light rays that cross the box: 64 samples spread over the diagonal, or, when
@@ -82,7 +119,9 @@ static void default_light(struct brume_scene *s, uint32_t diagonal)
     if (BRUME_WITH_UNIFORM) {
         s->light = BRUME_UNIFORM;
         s->light_samples = 64;
-        s->light_step = diagonal << 10;
+        s->light_step = diagonal << 10; /* 2^26 at most */
+        if (s->light_step < BRUME_MIN_STEP)
+            s->light_step = BRUME_MIN_STEP;
         if (s->light_step > BRUME_MAX_STEP)
             s->light_step = BRUME_MAX_STEP;
         return;
@@ -102,7 +141,7 @@ void brume_scene_default(struct brume_scene *scene,
     *s = k_zero;
     s->width = 640;
     s->height = 480;
-    default_camera(s, volume, diagonal);
+    default_camera(s, volume);
     brume_direction(s->sun, -60 * 65536, 30 << 16);
     s->density_scale = default_scale(volume, 16, diagonal);
     s->light_density_scale = default_scale(volume, 7, diagonal);

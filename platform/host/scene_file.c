@@ -323,7 +323,7 @@ static int apply_direction(const struct volume_file *file, const double v[3],
     if (!(length > 0) || !isfinite(length))
         return -1;
     for (int i = 0; i < 3; i++)
-        out[i] = (int32_t)floor(pool[i] / length * 1073741823.0 + 0.5);
+        out[i] = (int32_t)floor(pool[i] / length * 1073741824.0 + 0.5);
     return 0;
 }
 
@@ -355,28 +355,45 @@ static int apply_sun(const struct scene_settings *s,
     return apply_direction(file, v, out->sun);
 }
 
+/* Nothing said, and axes like the world's: the core's own default, to the
+ * bit. */
 static int apply_up(const struct scene_settings *s,
                     const struct volume_file *file, struct brume_scene *out,
                     char *err, size_t err_size)
 {
     static const double k_up[3] = {0, 1, 0};
     const double *up = s->set[SCENE_UP] ? s->value[SCENE_UP] : k_up;
-    if (apply_direction(file, up, out->up) == 0)
+    if ((!s->set[SCENE_UP] && !is_rotated(file)) ||
+        apply_direction(file, up, out->up) == 0)
         return 0;
     snprintf(err, err_size, "%s: up has no direction", s->where[SCENE_UP]);
     return -1;
 }
 
 /* The default camera is set in pool axes; in a turned volume it is moved so
- * that it looks the same way in world axes. */
+ * that it looks the same way in world axes, from where a sphere around the box
+ * fits 40 degrees, or as far as the core's limits allow. */
 static void turn_camera(const struct volume_file *file, struct brume_scene *s)
 {
-    double from[3], pool[3];
+    double from[3], away[3], length = 0, square = 0;
+    for (int i = 0; i < 3; i++) {
+        double side = file->volume.box_max[i] - file->volume.box_min[i] + 2;
+        from[i] = s->eye[i] - (double)s->target[i];
+        length += from[i] * from[i];
+        square += side * side;
+    }
+    volume_file_direction(file, from, away);
+    /* 1 / sin 20 degrees, and half of the diagonal */
+    double scale = sqrt(square / length) * 65536.0 * 2.93 / 2;
+    scale *= file->voxel_size; /* which volume_file_direction divides by */
+    for (int i = 0; i < 3; i++) {
+        double room = BRUME_MAX_COORDINATE -
+                      (away[i] < 0 ? -1.0 : 1.0) * s->target[i];
+        if (fabs(away[i]) * scale > room)
+            scale = room / fabs(away[i]);
+    }
     for (int i = 0; i < 3; i++)
-        from[i] = (s->eye[i] - (double)s->target[i]) * file->voxel_size;
-    volume_file_direction(file, from, pool);
-    for (int i = 0; i < 3; i++)
-        s->eye[i] = s->target[i] + (int32_t)floor(pool[i] + 0.5);
+        s->eye[i] = s->target[i] + (int32_t)floor(away[i] * scale);
 }
 
 /* The core's default light is uniform; doubling steps start from a voxel and
