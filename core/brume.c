@@ -93,8 +93,7 @@ static void default_camera(struct brume_scene *s, const struct brume_volume *v)
         distance = distance < most ? distance : most;
     }
     for (int i = 0; i < 3; i++)
-        s->eye[i] = s->target[i] +
-                    mul_signed_round(away[i], distance << 16, 2);
+        s->eye[i] = s->target[i] + mul_signed_round(away[i], distance << 16, 2);
     s->up[1] = 1 << 30;
     s->fov = 40u << 16;
 }

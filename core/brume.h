@@ -56,9 +56,9 @@ extern "C" {
 
 /* What is compiled in, 1 or 0. Each costs code only: about 0.9 KiB of
  * Thumb-2 per combination of format, apron, lookup, light and clamp; nearest
- * lookup of one format with log light takes 1.4 KiB, all together 42 KiB. A scene that asks for
- * what is missing gets BRUME_ERR_FEATURE; what it does render is the same
- * image as with everything compiled in. */
+ * lookup of one format with log light takes 1.4 KiB, all together 42 KiB. A
+ * scene that asks for what is missing gets BRUME_ERR_FEATURE; what it does
+ * render is the same image as with everything compiled in. */
 #ifndef BRUME_WITH_U8
 #define BRUME_WITH_U8 1
 #endif

@@ -52,7 +52,8 @@ static void print_info(const struct volume_file *file)
     printf("pool_bytes=%lu\n", (unsigned long)v->bricks * v->brick_bytes);
     printf("voxels=%lu\n", (unsigned long)v->voxels);
     printf("box_voxels=%dx%dx%d\n", v->box_max[0] - v->box_min[0] + 1,
-           v->box_max[1] - v->box_min[1] + 1, v->box_max[2] - v->box_min[2] + 1);
+           v->box_max[1] - v->box_min[1] + 1,
+           v->box_max[2] - v->box_min[2] + 1);
     printf("box_world=%.6g,%.6g,%.6g to %.6g,%.6g,%.6g\n", low[0], low[1],
            low[2], high[0], high[1], high[2]);
     printf("origin=%ld,%ld,%ld\n", (long)file->origin[0], (long)file->origin[1],

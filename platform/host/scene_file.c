@@ -132,7 +132,8 @@ static bool count_is_right(enum kind kind, int n)
 {
     switch (kind) {
     case VECTOR: return n == 3;
-    case ANGLES: case SIZE: return n == 2;
+    case ANGLES:
+    case SIZE: return n == 2;
     case COLOUR: return n == 1 || n == 3;
     default: return n == 1;
     }
@@ -225,8 +226,8 @@ int scene_set(struct scene_settings *settings, const char *text,
         return 0;
     }
     snprintf(err, err_size,
-             "%s: unknown key '%.40s' (brume render --help lists them)",
-             where, name);
+             "%s: unknown key '%.40s' (brume render --help lists them)", where,
+             name);
     return -1;
 }
 
@@ -387,8 +388,8 @@ static void turn_camera(const struct volume_file *file, struct brume_scene *s)
     double scale = sqrt(square / length) * 65536.0 * 2.93 / 2;
     scale *= file->voxel_size; /* which volume_file_direction divides by */
     for (int i = 0; i < 3; i++) {
-        double room = BRUME_MAX_COORDINATE -
-                      (away[i] < 0 ? -1.0 : 1.0) * s->target[i];
+        double room =
+            BRUME_MAX_COORDINATE - (away[i] < 0 ? -1.0 : 1.0) * s->target[i];
         if (fabs(away[i]) * scale > room)
             scale = room / fabs(away[i]);
     }
@@ -422,7 +423,7 @@ static void apply_numbers(const struct scene_settings *s,
 {
 #define SET(key, field, value_of) \
     if (s->set[key]) \
-        out->field = value_of(s->value[key][0])
+    out->field = value_of(s->value[key][0])
     SET(SCENE_FOV, fov, q16);
     SET(SCENE_DENSITY_SCALE, density_scale, q32);
     SET(SCENE_LIGHT_DENSITY_SCALE, light_density_scale, q32);
@@ -489,8 +490,7 @@ static void print_point(FILE *to, const char *name, const int32_t q[3],
     for (int i = 0; i < 3; i++)
         pool[i] = q[i] / 65536.0;
     volume_file_to_world(file, pool, world);
-    fprintf(to, "%s = %.17g,%.17g,%.17g\n", name, world[0], world[1],
-            world[2]);
+    fprintf(to, "%s = %.17g,%.17g,%.17g\n", name, world[0], world[1], world[2]);
 }
 
 static void print_q32(FILE *to, int key, uint64_t value)
@@ -516,8 +516,7 @@ static void world_direction(const struct volume_file *file, const int32_t q[3],
 {
     const double *m = file->world_from_index;
     for (int i = 0; i < 3; i++)
-        out[i] = (m[4 * i] * q[0] + m[4 * i + 1] * q[1] +
-                  m[4 * i + 2] * q[2]) /
+        out[i] = (m[4 * i] * q[0] + m[4 * i + 1] * q[1] + m[4 * i + 2] * q[2]) /
                  (file->voxel_size * 1073741824.0);
 }
 

@@ -57,8 +57,7 @@ static int check_transform(struct volume_file *file)
             return -1;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
-            dot[i][j] = m[i] * m[j] + m[4 + i] * m[4 + j] +
-                        m[8 + i] * m[8 + j];
+            dot[i][j] = m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j];
     double square = (dot[0][0] + dot[1][1] + dot[2][2]) / 3;
     if (!(square > 0) || !isfinite(square))
         return -1;
@@ -155,9 +154,9 @@ void volume_file_direction(const struct volume_file *file,
     const double *m = file->world_from_index;
     double square = file->voxel_size * file->voxel_size;
     for (int i = 0; i < 3; i++)
-        pool[i] = (m[i] * world[0] + m[4 + i] * world[1] +
-                   m[8 + i] * world[2]) /
-                  square;
+        pool[i] =
+            (m[i] * world[0] + m[4 + i] * world[1] + m[8 + i] * world[2]) /
+            square;
 }
 
 void volume_file_to_pool(const struct volume_file *file, const double world[3],

@@ -12,8 +12,8 @@
 
 struct volume_file {
     struct brume_volume volume;
-    void *data;      /* the mapped file */
-    size_t size;     /* its bytes */
+    void *data;        /* the mapped file */
+    size_t size;       /* its bytes */
     int32_t origin[3]; /* index-space coordinates of pool voxel (0,0,0) */
     double world_from_index[12]; /* rows of a 3x4 matrix */
     double voxel_size;           /* world units per voxel, > 0 */
