@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+//
+// brume-reference: renders a float dump in double precision. The renderer
+// under test is measured against it, so it shares no code with it.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "march.hpp"
+#include "pfm.hpp"
+
+namespace {
+
+using namespace reference;
+
+struct options {
+    std::string volume, scene, output;
+    std::vector<std::string> settings;
+    int threads = 0;             // 0: one per processor
+    rectangle area = {0, 0, 0, 0}; // empty: the whole picture
+    bool step_check = false;
+    bool help = false;
+};
+
+void print_help()
+{
+    std::cout
+        << "usage: brume-reference VOLUME.float --scene FILE"
+           " [--set key=value]... -o OUT.pfm\n\n"
+           "Renders a float dump (brume-bake --dump-float) in double"
+           " precision.\n\n"
+           "  --scene FILE          the scene: key = value a line, # comments\n"
+           "  --set key=value       one more setting; wins over the file\n"
+           "  -o FILE               linear PFM, grey, or RGB when the"
+           " background is r,g,b\n"
+           "  --threads N           default: one per processor; does not"
+           " change the result\n"
+           "  --view-range A,B,C,D  only pixels A <= x < C, B <= y < D\n"
+           "  --step-check          render at half the step too; print how"
+           " far apart the two\n"
+           "                        are, in 1/255\n\n"
+           "Scene keys, their defaults (lit: light is not none):\n";
+    print_scene_keys(std::cout);
+}
+
+int parse_int(const std::string &text, int low, int high)
+{
+    char *end = nullptr;
+    const long value = std::strtol(text.c_str(), &end, 10);
+    if (text.empty() || *end != '\0' || value < low || value > high)
+        throw std::runtime_error("'" + text + "' is not a number from " +
+                                 std::to_string(low) + " to " +
+                                 std::to_string(high));
+    return static_cast<int>(value);
+}
+
+rectangle parse_range(const std::string &text)
+{
+    int value[4];
+    size_t at = 0;
+    for (int i = 0; i < 4; i++) {
+        const size_t end = i < 3 ? text.find(',', at) : text.size();
+        if (end == std::string::npos)
+            throw std::runtime_error("--view-range: expected x0,y0,x1,y1");
+        value[i] = parse_int(text.substr(at, end - at), 0, 65535);
+        at = end + 1;
+    }
+    if (value[0] >= value[2] || value[1] >= value[3])
+        throw std::runtime_error("--view-range: no pixel in " + text);
+    return {value[0], value[1], value[2], value[3]};
+}
+
+options parse_options(const std::vector<std::string> &args)
+{
+    options o;
+    for (size_t i = 0; i < args.size(); i++) {
+        const std::string &arg = args[i];
+        const auto value = [&]() -> const std::string & {
+            if (++i == args.size())
+                throw std::runtime_error(arg + " needs a value");
+            return args[i];
+        };
+        if (arg == "--help" || arg == "-h")
+            o.help = true;
+        else if (arg == "--scene")
+            o.scene = value();
+        else if (arg == "--set")
+            o.settings.push_back(value());
+        else if (arg == "-o")
+            o.output = value();
+        else if (arg == "--threads")
+            o.threads = parse_int(value(), 1, 1024);
+        else if (arg == "--view-range")
+            o.area = parse_range(value());
+        else if (arg == "--step-check")
+            o.step_check = true;
+        else if (arg[0] == '-' || !o.volume.empty())
+            throw std::runtime_error("unexpected argument '" + arg + "'");
+        else
+            o.volume = arg;
+    }
+    return o;
+}
+
+scene load_scene(const options &o)
+{
+    scene_builder builder;
+    if (!o.scene.empty())
+        builder.read_file(o.scene);
+    for (const std::string &pair : o.settings)
+        builder.set_pair(pair);
+    return builder.finish();
+}
+
+// The discretisation error to expect of the scene's step: `name=value` a
+// line, like brume compare.
+void print_step_check(const picture &a, const picture &b)
+{
+    double squares = 0, sum = 0, worst = 0;
+    for (size_t i = 0; i < a.values.size(); i++) {
+        const double d = 255 * (a.values[i] - b.values[i]);
+        squares += d * d;
+        sum += d;
+        worst = std::max(worst, std::fabs(d));
+    }
+    const double n = static_cast<double>(a.values.size());
+    std::printf("step_check_rmse=%.6f\nstep_check_mean=%.6f\n"
+                "step_check_max=%.6f\n",
+                std::sqrt(squares / n), sum / n, worst);
+}
+
+void run(const options &o)
+{
+    if (o.volume.empty() || o.output.empty())
+        throw std::runtime_error("needs VOLUME.float and -o OUT.pfm;"
+                                 " --help tells more");
+    scene s = load_scene(o);
+    rectangle area = o.area;
+    if (area.x_max == 0)
+        area = {0, 0, s.width, s.height};
+    if (area.x_max > s.width || area.y_max > s.height)
+        throw std::runtime_error("--view-range leaves the picture");
+    const int processors =
+        std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    const int threads = o.threads ? o.threads : processors;
+
+    const volume v(read_float_dump(o.volume), s.max_density);
+    const picture image = renderer(v, s).render(area, threads);
+    write_pfm(o.output, image);
+    if (o.step_check) {
+        s.step /= 2;
+        print_step_check(image, renderer(v, s).render(area, threads));
+    }
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    try {
+        const options o = parse_options({argv + 1, argv + argc});
+        if (o.help)
+            print_help();
+        else
+            run(o);
+    } catch (const std::exception &e) {
+        std::fprintf(stderr, "brume-reference: %s\n", e.what());
+        return 2;
+    }
+    return 0;
+}

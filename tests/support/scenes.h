@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The scenes that tests render over and over: of every kernel a few, on
+ * volumes made here, and on real ones when their baked files are given. The
+ * same list serves the golden hashes, tilings, threads, compilers and targets.
+ * Needs the core alone.
+ */
+#ifndef BRUME_TESTS_SCENES_H
+#define BRUME_TESTS_SCENES_H
+
+#include "brume.h"
+
+struct test_scene {
+    const char *name;
+    const char *volume; /* of test_volume, or of a file */
+    uint16_t width, height;
+    uint8_t filter, light;
+    uint16_t light_samples;
+    uint8_t jitter, noise;
+    uint32_t step; /* Q16.16 */
+    uint32_t frame;
+    uint8_t view; /* enum test_view */
+    bool clamp;   /* max_density at half the volume's */
+    bool small;   /* kept as a picture too */
+};
+
+enum test_view {
+    VIEW_FRONT,
+    VIEW_INSIDE,  /* eye in the middle of the box */
+    VIEW_GRAZING, /* eye on a face of the box, looking along it */
+    VIEW_FAR,     /* the box a few pixels wide */
+    VIEW_TOP,     /* straight down, up parallel to the view */
+    VIEW_SUN      /* against the sun */
+};
+
+extern const struct test_scene test_scenes[];
+extern const int test_scene_count;
+
+/* The volumes of test scenes. They live until test_volumes_free. */
+struct test_volume {
+    char name[24];
+    uint8_t *asset;
+    struct brume_volume volume;
+};
+#define TEST_VOLUMES 16
+struct test_volumes {
+    int count;
+    struct test_volume item[TEST_VOLUMES];
+};
+
+/* Makes the synthetic volumes, and opens `name=path` arguments. Prints what
+ * is wrong and returns -1 when one of them cannot be had. */
+int test_volumes_make(struct test_volumes *volumes, int argc, char **argv);
+void test_volumes_free(struct test_volumes *volumes);
+
+/* The volume of a scene, or NULL. */
+const struct brume_volume *test_volume_of(const struct test_volumes *volumes,
+                                          const struct test_scene *scene);
+
+/* The core's scene of a test scene. Every field is set here, none left to the
+ * core's defaults. */
+void test_scene_fill(struct brume_scene *out, const struct test_scene *scene,
+                     const struct brume_volume *volume);
+
+/* CRC-32 of bytes, from 0. */
+uint32_t test_crc32(const void *data, size_t size);
+
+#endif

@@ -1,0 +1,66 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# One image: the core compiled in many ways gives the golden hashes, and small
+# configurations give those of the scenes that they support.
+set -eu
+: "${BUILD:=build}" "${DATA:=../shared/data}"
+. tests/lib.sh
+. tests/volumes.sh
+out=$BUILD/builds
+mkdir -p "$out"
+files="core/*.c tests/support/asset_builder.c tests/support/scenes.c
+    tests/hash_scenes.c"
+
+# build NAME COMPILER FLAGS...: the hashes go to $out/NAME.txt.
+build()
+{
+    name=$1
+    shift
+    # shellcheck disable=SC2086
+    "$@" -std=c11 -Icore -Itests $files -o "$out/$name" 2>"$out/$name.log" &&
+        "./$out/$name" $volumes >"$out/$name.txt" 2>>"$out/$name.log"
+}
+
+same_hashes()
+{
+    # What the build cannot do, or has no volume for, is no difference.
+    grep -Ev ' (feature|absent)$' "$out/$1.txt" >"$out/$1.has" || return 1
+    [ "$(wc -l <"$out/$1.has")" -ge "$2" ] || return 1
+    if grep -vxFf tests/golden/hashes.txt "$out/$1.has"; then
+        return 1
+    fi
+}
+
+try()
+{
+    name=$1 least=$2
+    shift 2
+    if ! command -v "$1" >/dev/null; then
+        skip "$name: no $1 here"
+        return
+    fi
+    build "$name" "$@" || cat "$out/$name.log"
+    check "$name: at least $least scenes have the golden hash" \
+        same_hashes "$name" "$least"
+}
+
+sanitize="-g -fsanitize=address,undefined -fno-sanitize-recover=all"
+lean="-DBRUME_WITH_TRILINEAR=0 -DBRUME_WITH_UNIFORM=0 -DBRUME_WITH_APRON=0
+    -DBRUME_WITH_U4R=0 -DBRUME_WITH_MAX_DENSITY=0"
+try gcc_O0 22 gcc -O0
+try gcc_Os 22 gcc -Os
+try gcc_O3_native 22 gcc -O3 -march=native
+try gcc_unsigned_char 22 gcc -O2 -funsigned-char -fwrapv
+try gcc_mul32 22 gcc -O2 -DBRUME_MUL64=0
+# shellcheck disable=SC2086
+try gcc_sanitizers 22 gcc -O1 $sanitize
+try gcc_checked 22 gcc -O2 -DBRUME_FIXED_DEBUG
+try clang_O0 22 clang -O0
+try clang_O3 22 clang -O3
+# shellcheck disable=SC2086
+try clang_sanitizers 22 clang -O1 $sanitize -DBRUME_FIXED_DEBUG
+# shellcheck disable=SC2086
+try gcc_lean 10 gcc -Os $lean
+try gcc_trilinear_only 7 gcc -O2 -DBRUME_WITH_NEAREST=0
+try gcc_u4r_only 3 gcc -O2 -DBRUME_WITH_U8=0 -DBRUME_WITH_U8R=0
+finish
