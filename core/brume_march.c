@@ -253,13 +253,17 @@ static void set_tau(struct brume_frame *f, struct brume_number unit)
             f->tau_limit |= bit;
 }
 
-/* Density in codes: floor(density / density_max * 255 or 65280). */
+/* Density in codes: floor(density / density_max * 255 or 65280). The quotient
+ * is up to 2^-28 of itself too low, which is less than 2^-11 of a code: what
+ * is that near below a code is that code, so that a threshold which is a code
+ * stays one. */
 static uint32_t codes_of(struct brume_number density,
                          const struct brume_volume *v, bool narrow)
 {
     struct brume_number n =
         brume_number_mul(density, brume_number_inverse(v->density_max));
-    return brume_number_floor(times(n, narrow ? 255 : 65280), 0);
+    uint32_t q11 = brume_number_floor(times(n, narrow ? 255 : 65280), 11);
+    return (q11 >> 11) + ((q11 & 0x7ffu) == 0x7ffu ? 1u : 0u);
 }
 
 static void set_light(struct brume_frame *f, const struct brume_scene *s)
