@@ -118,17 +118,27 @@ uint32_t brume_inverse_of_move(int32_t move)
     return move == 0 ? 0xffffffffu : 0xffffffffu / magnitude(move);
 }
 
-/* distance / speed: Q16.16 / Q2.30 -> Q16.16, all ones when it is more. */
-static uint32_t time_of(uint32_t distance, uint32_t speed)
+/* 1 / speed of an axis, for time_of: 2^63 / (speed * 2^shift). */
+struct pace {
+    uint32_t reciprocal;
+    unsigned shift;
+};
+
+/* speed in Q2.30, 1 .. 2^30: shift >= 1. */
+static struct pace pace_of(uint32_t speed)
 {
-    unsigned shift = 0; /* speed <= 2^30: shift >= 1 */
-    do {
-        speed <<= 1;
-        shift++;
-    } while (speed < 0x80000000u);
+    unsigned shift = leading_zeros(speed);
+    struct pace pace = {brume_reciprocal(speed << shift), shift};
+    return pace;
+}
+
+/* distance / speed: Q16.16 / Q2.30 -> Q16.16, all ones when it is more. */
+static uint32_t time_of(uint32_t distance, struct pace pace)
+{
     /* distance 2^30 2^shift / speed = distance r 2^(shift-33) */
-    uint32_t r = brume_reciprocal(speed);
-    uint32_t high = mul_hi_floor(distance, r), low = distance * r;
+    unsigned shift = pace.shift;
+    uint32_t high = mul_hi_floor(distance, pace.reciprocal);
+    uint32_t low = distance * pace.reciprocal;
     if (shift > 1 && high >> (33 - shift) != 0)
         return 0xffffffffu;
     return shift > 1 ? high << (shift - 1) | low >> (33 - shift) : high;
@@ -152,18 +162,21 @@ static bool clip(const struct brume_frame *f, const int32_t unit[3],
         uint32_t to_high = f->limit[i] - (uint32_t)f->eye[i];
         if (above)
             to_high = 0u - to_high;
-        uint32_t speed = magnitude(unit[i]);
-        uint32_t t = time_of(unit[i] > 0 ? to_high : to_low, speed);
+        struct pace pace = pace_of(magnitude(unit[i]));
+        uint32_t t = time_of(unit[i] > 0 ? to_high : to_low, pace);
         if (t < *t_out)
             *t_out = t;
         if (below || above) {
-            t = time_of(below ? to_low : to_high, speed);
+            t = time_of(below ? to_low : to_high, pace);
             if (t > *t_in)
                 *t_in = t;
         }
+        /* A ray along a face may seem to leave before it enters, by
+         * rounding. */
+        if (*t_in > *t_out && *t_in - *t_out >= 16u)
+            return false;
     }
-    /* A ray along a face may seem to leave before it enters, by rounding. */
-    return *t_in < FAR_ENTRY && (*t_in <= *t_out || *t_in - *t_out < 16u);
+    return *t_in < FAR_ENTRY;
 }
 
 static bool inside(const struct brume_frame *f, const uint32_t p[3])
@@ -190,6 +203,8 @@ static bool enter(struct brume_ray *ray, const struct brume_frame *f,
         ray->position[i] = (uint32_t)f->eye[i] + (unit[i] < 0 ? 0u - way : way);
         ray->move[i] = mul_signed_round(unit[i], f->step, 2);
     }
+    if (inside(f, ray->position))
+        return true;
     uint32_t tries = t_out > t ? (t_out - t) / f->step + 2u : 2u;
     for (; !inside(f, ray->position); tries--) {
         if (tries == 0)

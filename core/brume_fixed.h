@@ -36,6 +36,33 @@
 #endif
 #endif
 
+/* One instruction to count leading zeros? Elsewhere compilers would call a
+ * helper; there a loop does. */
+#ifndef BRUME_CLZ
+#if defined(__GNUC__) && \
+    (defined(__x86_64__) || defined(__i386__) || defined(__aarch64__) || \
+     defined(__ARM_FEATURE_CLZ) || defined(__riscv_zbb) || \
+     defined(__powerpc__) || defined(__s390x__) || defined(__wasm__))
+#define BRUME_CLZ 1
+#else
+#define BRUME_CLZ 0
+#endif
+#endif
+
+/* Zero bits above the highest set one; a > 0. */
+BRUME_INLINE unsigned leading_zeros(uint32_t a)
+{
+    BRUME_CHECK(a != 0);
+#if BRUME_CLZ
+    return (unsigned)__builtin_clz(a);
+#else
+    unsigned n = 0;
+    for (; a < 0x80000000u; a <<= 1)
+        n++;
+    return n;
+#endif
+}
+
 /* High word of a * b: Qa * Qb -> Q(a + b - 32), floor. Any operands. */
 BRUME_INLINE uint32_t mul_hi_floor(uint32_t a, uint32_t b)
 {

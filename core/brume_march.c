@@ -38,22 +38,24 @@ BRUME_INLINE uint32_t leap(const struct brume_frame *f, const uint32_t p[3],
 /// Light ///
 
 /* Sum of d * 2^k over the samples at p + light * 2^k. < 2^32: a 16-bit code
- * times 2^16 - 1. The pool is convex: out once, out for good. */
+ * times 2^16 - 1. The pool is convex: out once, out for good. From one sample
+ * to the next, q = p + light * 2^k becomes 2 q - p. */
 BRUME_INLINE uint32_t sum_log(const struct brume_frame *f,
                               const struct brume_ray *ray, const uint32_t p[3],
                               struct kernel k)
 {
-    uint32_t ox = (uint32_t)ray->light[0], oy = (uint32_t)ray->light[1];
-    uint32_t oz = (uint32_t)ray->light[2], n = ray->light_samples, sum = 0;
-    for (uint32_t i = 0; i < n; i++) {
-        uint32_t x = p[0] + ox, y = p[1] + oy, z = p[2] + oz, d;
+    uint32_t x = p[0] + (uint32_t)ray->light[0];
+    uint32_t y = p[1] + (uint32_t)ray->light[1];
+    uint32_t z = p[2] + (uint32_t)ray->light[2];
+    uint32_t end = 1u << ray->light_samples, sum = 0, d;
+    for (uint32_t w = 1; w != end; w += w) {
         if (x >= f->limit[0] || y >= f->limit[1] || z >= f->limit[2])
             break;
         if (density_at(f, x, y, z, &d, k))
-            sum += d << i;
-        ox += ox;
-        oy += oy;
-        oz += oz;
+            sum += d * w;
+        x = 2 * x - p[0];
+        y = 2 * y - p[1];
+        z = 2 * z - p[2];
     }
     return sum;
 }
