@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: MIT
+#include "asset_writer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <tbb/parallel_invoke.h>
+#include <zlib.h>
+
+#include "brume.h"
+
+namespace bake
+{
+
+namespace
+{
+
+constexpr size_t name_limit = 255;
+constexpr size_t ident_bytes = 16; // magic .. crc, not under the CRC
+constexpr size_t buffer_words = 16384;
+
+// Little-endian stores, on any host.
+void put16(uint8_t *p, uint32_t v)
+{
+    p[0] = uint8_t(v);
+    p[1] = uint8_t(v >> 8);
+}
+
+void put32(uint8_t *p, uint32_t v)
+{
+    put16(p, v);
+    put16(p + 2, v >> 16);
+}
+
+void put64(uint8_t *p, uint64_t v)
+{
+    put32(p, uint32_t(v));
+    put32(p + 4, uint32_t(v >> 32));
+}
+
+void put_double(uint8_t *p, double v)
+{
+    uint64_t bits;
+
+    std::memcpy(&bits, &v, sizeof bits);
+    put64(p, bits);
+}
+
+uint32_t float_bits(float v)
+{
+    uint32_t bits;
+
+    std::memcpy(&bits, &v, sizeof bits);
+    return bits;
+}
+
+// m * 2^e with m in [2^31, 2^32): exact for every float.
+void put_number(uint8_t *p, double v)
+{
+    int e = 0;
+    double m = std::floor(std::ldexp(std::frexp(v, &e), 32) + 0.5);
+
+    if (m >= 4294967296.0) {
+        m /= 2;
+        e++;
+    }
+    put32(p, uint32_t(m));
+    put32(p + 4, uint32_t(v > 0 ? e - 32 : 0));
+}
+
+// The file, with the CRC of what went into it.
+class sink
+{
+  public:
+    explicit sink(atomic_file &out) : out_(out)
+    {
+    }
+
+    void put(const void *data, size_t bytes)
+    {
+        tbb::parallel_invoke([&] { out_.write(data, bytes); },
+                             [&] { add_crc(data, bytes); });
+        at_ += bytes;
+    }
+
+    // word(i) for i in [0, count), little-endian.
+    template <class maker> void put_words(size_t count, maker word)
+    {
+        std::vector<uint8_t> buffer(4 * std::min(count, buffer_words));
+
+        for (size_t i = 0; i < count;) {
+            const size_t n = std::min(count - i, buffer_words);
+            for (size_t k = 0; k < n; k++)
+                put32(&buffer[4 * k], word(i + k));
+            put(buffer.data(), 4 * n);
+            i += n;
+        }
+    }
+
+    void pad_to(uint64_t offset)
+    {
+        static const uint8_t zeros[BRUME_SECTION_ALIGN] = {};
+
+        put(zeros, size_t(offset - at_));
+    }
+
+    uint32_t crc() const
+    {
+        return uint32_t(crc_);
+    }
+    void start_at(uint64_t offset)
+    {
+        at_ = offset;
+    }
+
+  private:
+    void add_crc(const void *data, size_t bytes)
+    {
+        const auto *p = static_cast<const Bytef *>(data);
+
+        // zlib counts in 32 bits.
+        for (size_t done = 0; done < bytes;) {
+            const size_t n = std::min(bytes - done, size_t(1) << 30);
+            crc_ = crc32(crc_, p + done, uInt(n));
+            done += n;
+        }
+    }
+
+    atomic_file &out_;
+    uLong crc_ = crc32(0, nullptr, 0);
+    uint64_t at_ = 0;
+};
+
+struct section {
+    uint32_t id;
+    uint64_t offset, bytes;
+};
+
+uint64_t align(uint64_t offset)
+{
+    const uint64_t a = BRUME_SECTION_ALIGN;
+
+    return (offset + a - 1) / a * a;
+}
+
+std::vector<section> place(const asset_size &size)
+{
+    std::vector<section> list = {{BRUME_SECTION_CELL, 0, size.cell},
+                                 {BRUME_SECTION_POOL, 0, size.pool}};
+
+    if (size.range > 0)
+        list.push_back({BRUME_SECTION_RNGE, 0, size.range});
+    if (size.name > 0)
+        list.push_back({BRUME_SECTION_NAME, 0, size.name});
+    uint64_t end = BRUME_HEADER_BYTES + list.size() * BRUME_SECTION_BYTES;
+    for (section &s : list) {
+        s.offset = align(end);
+        end = s.offset + s.bytes;
+    }
+    return list;
+}
+
+std::vector<uint8_t> make_header(const volume &vol, const measures &m,
+                                 const layout &l, const brick_pool &p,
+                                 const std::vector<section> &list)
+{
+    std::vector<uint8_t> h(BRUME_HEADER_BYTES +
+                           list.size() * BRUME_SECTION_BYTES);
+    const int32_t cells[3] = {l.cells.x, l.cells.y, l.cells.z};
+    const int32_t origin[3] = {l.origin.x, l.origin.y, l.origin.z};
+    const int32_t lo[3] = {m.tight.lo.x, m.tight.lo.y, m.tight.lo.z};
+    const int32_t hi[3] = {m.tight.hi.x, m.tight.hi.y, m.tight.hi.z};
+
+    put32(&h[BRUME_OFF_MAGIC], BRUME_MAGIC);
+    put16(&h[BRUME_OFF_MAJOR], BRUME_ASSET_MAJOR);
+    put16(&h[BRUME_OFF_MINOR], BRUME_ASSET_MINOR);
+    put32(&h[BRUME_OFF_SIZE], uint32_t(list.back().offset + list.back().bytes));
+    h[BRUME_OFF_FORMAT] = uint8_t(p.format.format);
+    h[BRUME_OFF_SIDE] = uint8_t(p.format.side);
+    put16(&h[BRUME_OFF_SECTIONS], uint32_t(list.size()));
+    for (int a = 0; a < 3; a++) {
+        put16(&h[BRUME_OFF_CELLS + 2 * a], uint32_t(cells[a]));
+        put32(&h[BRUME_OFF_ORIGIN + 4 * a], uint32_t(origin[a]));
+        put16(&h[BRUME_OFF_BOX_MIN + 2 * a], uint32_t(lo[a] - origin[a]));
+        put16(&h[BRUME_OFF_BOX_MAX + 2 * a], uint32_t(hi[a] - origin[a]));
+    }
+    put32(&h[BRUME_OFF_BRICKS], uint32_t(p.bricks));
+    put_number(&h[BRUME_OFF_DENSITY_MAX], double(p.format.density_max));
+    put_number(&h[BRUME_OFF_DENSITY_MEAN], m.mean);
+    put32(&h[BRUME_OFF_VOXELS],
+          uint32_t(std::min<uint64_t>(m.voxels, UINT32_MAX)));
+    for (int i = 0; i < 12; i++)
+        put_double(&h[BRUME_OFF_WORLD + 8 * i], vol.world[i]);
+    for (size_t i = 0; i < list.size(); i++) {
+        uint8_t *e = &h[BRUME_HEADER_BYTES + i * BRUME_SECTION_BYTES];
+        put32(e, list[i].id);
+        put32(e + 4, uint32_t(list[i].offset));
+        put32(e + 8, uint32_t(list[i].bytes));
+    }
+    return h;
+}
+
+// At most 255 bytes, cut between two UTF-8 characters.
+std::string short_name(const std::string &name)
+{
+    size_t n = std::min(name.size(), name_limit);
+
+    while (n < name.size() && n > 0 && (uint8_t(name[n]) & 0xc0) == 0x80)
+        n--;
+    return name.substr(0, n);
+}
+
+} // namespace
+
+asset_size write_asset(atomic_file &out, const volume &vol, const measures &m,
+                       const layout &l, const brick_pool &p,
+                       const std::string &name)
+{
+    const std::string label = short_name(name);
+    asset_size size = {4 * p.cells.size(), p.bytes.size(), 4 * p.ranges.size(),
+                       label.size(), 0};
+    const std::vector<section> list = place(size);
+    std::vector<uint8_t> header = make_header(vol, m, l, p, list);
+    sink s(out);
+
+    out.write(header.data(), ident_bytes);
+    s.start_at(ident_bytes);
+    s.put(&header[ident_bytes], header.size() - ident_bytes);
+    for (const section &part : list) {
+        s.pad_to(part.offset);
+        if (part.id == BRUME_SECTION_CELL)
+            s.put_words(p.cells.size(), [&](size_t i) { return p.cells[i]; });
+        else if (part.id == BRUME_SECTION_POOL)
+            s.put(p.bytes.data(), p.bytes.size());
+        else if (part.id == BRUME_SECTION_RNGE)
+            s.put_words(p.ranges.size(), [&](size_t i) {
+                return uint32_t(p.ranges[i].base) | uint32_t(p.ranges[i].scale)
+                                                        << 16;
+            });
+        else
+            s.put(label.data(), label.size());
+    }
+    put32(&header[BRUME_OFF_CRC], s.crc());
+    out.write_at(0, header.data(), ident_bytes);
+    size.total = list.back().offset + list.back().bytes;
+    return size;
+}
+
+void write_float_dump(atomic_file &out, const volume &vol, const layout &l)
+{
+    const block_map map(vol);
+    const size_t nx = size_t(l.cells.x) * block_side;
+    std::string head = text("brume-float 1\nsize %zu %d %d\n"
+                            "origin %d %d %d\nworld_from_index",
+                            nx, l.cells.y * block_side, l.cells.z * block_side,
+                            l.origin.x, l.origin.y, l.origin.z);
+    sink s(out);
+
+    for (double v : vol.world)
+        head += text(" %.17g", v);
+    head += "\ndata float32le\n";
+    s.put(head.data(), head.size());
+    // A row of voxels at a time.
+    for (int z = l.origin.z; z < l.origin.z + l.cells.z * block_side; z++)
+        for (int y = l.origin.y; y < l.origin.y + l.cells.y * block_side; y++)
+            s.put_words(nx, [&](size_t i) {
+                const int x = l.origin.x + int(i);
+                const uint32_t b = map.at({floor8(x), floor8(y), floor8(z)});
+                if (b == block_map::none)
+                    return uint32_t(0);
+                const block &k = vol.blocks[b];
+                return float_bits(
+                    k.voxels ? k.voxels[(x & 7) + 8 * (y & 7) + 64 * (z & 7)]
+                             : k.value);
+            });
+}
+
+} // namespace bake

@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: MIT
+#include "bricks.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/parallel_sort.h>
+#include <tbb/task_arena.h>
+#include <unordered_map>
+
+#include "brume.h"
+
+namespace bake
+{
+
+namespace
+{
+
+// Bricks that one task quantises: their codes fit a core's own cache.
+constexpr size_t batch_bricks = 512;
+
+// A format that will not do should be found out soon: how many bricks to try
+// first, and how often to look from then on. A multiple of the batch.
+constexpr size_t check_bricks = 2048;
+
+// The format's blob is a u32 of bytes; half of that leaves readers free to
+// use signed offsets.
+constexpr uint64_t blob_limit = uint64_t(1) << 31;
+
+// The low 12 bits of x, three apart. Cells per axis: < 2^12.
+uint64_t spread(uint32_t x)
+{
+    uint64_t v = x & 0xfffu;
+
+    v = (v | v << 16) & 0x0000ff0000ffu;
+    v = (v | v << 8) & 0x00f00f00f00fu;
+    v = (v | v << 4) & 0x0c30c30c30c3u;
+    v = (v | v << 2) & 0x249249249249u;
+    return v;
+}
+
+uint64_t order_key(const layout &l, brick_order order, ijk c)
+{
+    if (order == brick_order::linear)
+        return l.cell_index(c);
+    return spread(uint32_t(c.x)) | spread(uint32_t(c.y)) << 1 |
+           spread(uint32_t(c.z)) << 2;
+}
+
+void check_limits(const box &tight, ijk cells)
+{
+    const int most = std::max({cells.x, cells.y, cells.z});
+    const double bytes = 4.0 * cells.x * cells.y * cells.z;
+
+    if (most > int(BRUME_MAX_CELLS))
+        throw failure(text(
+            "%lld x %lld x %lld voxels need %d x %d x %d cells; the format "
+            "has at most %u per axis (try --lod)",
+            (long long)tight.hi.x - tight.lo.x + 1,
+            (long long)tight.hi.y - tight.lo.y + 1,
+            (long long)tight.hi.z - tight.lo.z + 1, cells.x, cells.y, cells.z,
+            BRUME_MAX_CELLS));
+    if (bytes >= double(blob_limit))
+        throw failure(text(
+            "the grid of %d x %d x %d cells takes %.2f GiB; the format holds "
+            "2 GiB (try --lod)",
+            cells.x, cells.y, cells.z, bytes / 1073741824));
+}
+
+// The cells whose apron reaches into a block: the block's own, and those one
+// below on any axes. The pool's lowest cells have none below: blocks there are
+// zero where an apron could reach, and keys of cells outside would be those of
+// others.
+void add_apron_jobs(const volume &vol, layout &l)
+{
+    const ijk first = {floor8(l.origin.x), floor8(l.origin.y),
+                       floor8(l.origin.z)};
+    const size_t blocks = vol.blocks.size();
+
+    l.map = block_map(vol);
+    for (size_t i = 0; i < 8 * blocks; i++) {
+        const ijk b = vol.blocks[i / 8].cell;
+        const ijk c = {b.x - int(i & 1), b.y - int(i >> 1 & 1),
+                       b.z - int(i >> 2 & 1)};
+        if (i % 8 != 0 && (l.map.at(c) != block_map::none || c.x < first.x ||
+                           c.y < first.y || c.z < first.z))
+            continue;
+        l.jobs.push_back(
+            {{c.x - first.x, c.y - first.y, c.z - first.z}, l.map.at(c), 0});
+    }
+}
+
+// The densities of a brick with its apron. Neighbours that do not exist are
+// zero.
+void gather_apron(const volume &vol, const layout &l, const job &j, float *out)
+{
+    const float *near[8] = {};
+    float scratch[8][block_voxels];
+
+    for (int n = 0; n < 8; n++) {
+        const ijk c = {j.cell.x + floor8(l.origin.x) + (n & 1),
+                       j.cell.y + floor8(l.origin.y) + (n >> 1 & 1),
+                       j.cell.z + floor8(l.origin.z) + (n >> 2)};
+        const uint32_t b = l.map.at(c);
+        if (b != block_map::none)
+            near[n] = expand(vol.blocks[b], scratch[n]);
+    }
+    for (int z = 0; z < apron_side; z++)
+        for (int y = 0; y < apron_side; y++)
+            for (int x = 0; x < apron_side; x++) {
+                const int n = x / 8 + y / 8 * 2 + z / 8 * 4;
+                const int i = x % 8 + y % 8 * 8 + z % 8 * 64;
+                *out++ = near[n] ? near[n][i] : 0;
+            }
+}
+
+// Multiply and fold, a word at a time: collisions are compared, so a hash
+// need only be fast and even.
+uint64_t hash_bytes(const uint8_t *p, size_t bytes, range r)
+{
+    uint64_t h = (uint64_t(r.base) << 16 | r.scale) + 0x9e3779b97f4a7c15u;
+
+    for (size_t i = 0; i < bytes; i += 4) {
+        uint32_t w;
+        std::memcpy(&w, p + i, 4);
+        h = (h ^ w) * 0xd6e8feb86659fd93u;
+        h ^= h >> 32;
+    }
+    return h;
+}
+
+brick_result quantise_job(const volume &vol, const layout &l,
+                          const brick_format &f, const job &j, uint8_t *codes)
+{
+    float scratch[max_brick_voxels];
+
+    if (l.side == block_side)
+        return quantise(f, expand(vol.blocks[j.block], scratch), codes);
+    gather_apron(vol, l, j, scratch);
+    return quantise(f, scratch, codes);
+}
+
+// The bricks of `count` jobs from `first` on.
+struct batch {
+    size_t first, count;
+    std::vector<brick_result> results;
+    std::vector<uint8_t> codes;
+    std::vector<uint64_t> hashes;
+};
+
+using batch_ptr = std::shared_ptr<batch>;
+
+void quantise_batch(const volume &vol, const layout &l, const brick_format &f,
+                    batch &b)
+{
+    const size_t bytes = f.bytes();
+
+    b.results.resize(b.count);
+    b.codes.resize(b.count * bytes);
+    b.hashes.resize(b.count);
+    for (size_t i = 0; i < b.count; i++) {
+        const job *j = &l.jobs[b.first + i];
+        uint8_t *codes = &b.codes[i * bytes];
+        if (i + 1 < b.count && j[1].block != block_map::none)
+            prefetch(vol.blocks[j[1].block]);
+        b.results[i] = quantise_job(vol, l, f, *j, codes);
+        b.hashes[i] = hash_bytes(codes, bytes, b.results[i].r);
+    }
+}
+
+// The bricks stored so far, by hash. Bricks with one hash form a chain.
+class brick_store
+{
+  public:
+    explicit brick_store(brick_pool &pool) : pool_(pool)
+    {
+    }
+
+    // The number of the brick with these codes and range, stored if new.
+    uint32_t number(const uint8_t *codes, range r, uint64_t hash)
+    {
+        const size_t bytes = pool_.format.bytes();
+        const auto found = first_.emplace(hash, uint32_t(pool_.bricks));
+
+        if (!found.second) {
+            uint32_t n = found.first->second;
+            for (; n != block_map::none; n = next_[n])
+                if (ranges_[n] == r &&
+                    !std::memcmp(&pool_.bytes[n * bytes], codes, bytes))
+                    return n;
+            next_.push_back(found.first->second);
+            found.first->second = uint32_t(pool_.bricks);
+        } else {
+            next_.push_back(block_map::none);
+        }
+        pool_.bytes.insert(pool_.bytes.end(), codes, codes + bytes);
+        ranges_.push_back(r);
+        return uint32_t(pool_.bricks++);
+    }
+
+    std::vector<range> take_ranges()
+    {
+        return std::move(ranges_);
+    }
+
+  private:
+    brick_pool &pool_;
+    std::unordered_map<uint64_t, uint32_t> first_;
+    std::vector<uint32_t> next_;
+    std::vector<range> ranges_;
+};
+
+void check_blob(const brick_pool &p)
+{
+    const uint64_t bytes = p.bytes.size() + 4 * p.cells.size() +
+                           (p.format.has_ranges() ? 4 * p.bricks : 0) + 4096;
+
+    if (bytes >= blob_limit)
+        throw failure(text("more than %llu bricks of %zu bytes with %zu cells "
+                           "pass the 2 GiB a file may have (try --lod or "
+                           "--format u4r)",
+                           (unsigned long long)p.bricks, p.format.bytes(),
+                           p.cells.size()));
+}
+
+// Running totals, from units to density at the end.
+struct error_sum {
+    double squared = 0, worst = 0;
+
+    void add(const brick_result &r)
+    {
+        squared += r.squared_error;
+        worst = std::max(worst, r.worst_error);
+    }
+    quantisation_error in_density(const measures &m,
+                                  const brick_format &f) const
+    {
+        const double unit = double(f.density_max) / BRUME_RANGE_TOP;
+        return {std::sqrt(squared / double(m.voxels)) * unit, worst * unit};
+    }
+};
+
+bool within(const quantisation_error &e, const quantisation_error &limit)
+{
+    return e.rmse <= limit.rmse && e.worst <= limit.worst;
+}
+
+// The error of some bricks from all over: one that is far off is enough to
+// refuse a format.
+quantisation_error probe(const volume &vol, const measures &m, const layout &l,
+                         const brick_format &f)
+{
+    const size_t some = std::min(check_bricks, l.jobs.size());
+    const size_t step = l.jobs.size() / some;
+    std::vector<brick_result> results(some);
+    error_sum sum;
+
+    tbb::parallel_for(size_t(0), some, [&](size_t i) {
+        uint8_t codes[max_brick_bytes];
+        results[i] = quantise_job(vol, l, f, l.jobs[i * step], codes);
+    });
+    for (const brick_result &r : results)
+        sum.add(r);
+    return sum.in_density(m, f);
+}
+
+// Quantised batches, in order, become the pool.
+class pool_maker
+{
+  public:
+    pool_maker(const measures &m, const layout &l,
+               const quantisation_error &limit, brick_pool &pool)
+        : m_(m), l_(l), limit_(limit), pool_(pool), store_(pool)
+    {
+        pool.cells.assign(l.cell_count(), BRUME_CELL_EMPTY | 255);
+        pool.bytes.reserve(std::min<uint64_t>(
+            l.jobs.size() * pool.format.bytes(), blob_limit));
+    }
+
+    // Returns false when the error passes the limit.
+    bool add(const batch &b)
+    {
+        const size_t bytes = pool_.format.bytes(), end = b.first + b.count;
+
+        for (size_t i = 0; i < b.count; i++) {
+            const brick_result &r = b.results[i];
+            sum_.add(r);
+            if (r.empty)
+                continue;
+            pool_.cells[l_.cell_index(l_.jobs[b.first + i].cell)] =
+                store_.number(&b.codes[i * bytes], r.r, b.hashes[i]);
+            pool_.occupied++;
+        }
+        check_blob(pool_);
+        if (end % check_bricks != 0 && end != l_.jobs.size())
+            return true;
+        pool_.error = sum_.in_density(m_, pool_.format);
+        return within(pool_.error, limit_);
+    }
+
+    void finish()
+    {
+        if (pool_.format.has_ranges())
+            pool_.ranges = store_.take_ranges();
+        fill_distances(pool_.cells, l_.cells);
+    }
+
+  private:
+    const measures &m_;
+    const layout &l_;
+    const quantisation_error limit_;
+    brick_pool &pool_;
+    brick_store store_;
+    error_sum sum_;
+};
+
+} // namespace
+
+layout make_layout(const volume &vol, const box &tight, int side,
+                   brick_order order)
+{
+    layout l;
+    const ijk lo = tight.lo, hi = tight.hi;
+
+    // One voxel of zeros below and above: floor8(lo - 1) .. ceil8(hi + 2).
+    const ijk first = {floor8(lo.x - 1), floor8(lo.y - 1), floor8(lo.z - 1)};
+    l.origin = {first.x * 8, first.y * 8, first.z * 8};
+    l.cells = {floor8(hi.x + 1) + 1 - first.x, floor8(hi.y + 1) + 1 - first.y,
+               floor8(hi.z + 1) + 1 - first.z};
+    l.side = side;
+    check_limits(tight, l.cells);
+    if (side == apron_side)
+        add_apron_jobs(vol, l);
+    else
+        for (size_t i = 0; i < vol.blocks.size(); i++) {
+            const ijk c = vol.blocks[i].cell;
+            l.jobs.push_back({{c.x - first.x, c.y - first.y, c.z - first.z},
+                              uint32_t(i),
+                              0});
+        }
+    for (job &j : l.jobs)
+        j.key = order_key(l, order, j.cell);
+    tbb::parallel_sort(
+        l.jobs.begin(), l.jobs.end(),
+        [](const job &a, const job &b) { return a.key < b.key; });
+    const auto same = [](const job &a, const job &b) { return a.key == b.key; };
+    l.jobs.erase(std::unique(l.jobs.begin(), l.jobs.end(), same), l.jobs.end());
+    return l;
+}
+
+bool make_bricks(const volume &vol, const measures &m, const layout &l,
+                 const brick_format &f, const quantisation_error &limit,
+                 progress &bar, brick_pool &pool)
+{
+    const size_t all = l.jobs.size();
+    size_t next = 0;
+    std::atomic<bool> good{true};
+
+    pool = {};
+    pool.format = f;
+    if (std::isfinite(limit.worst)) {
+        pool.error = probe(vol, m, l, f);
+        if (!within(pool.error, limit))
+            return false;
+    }
+    pool_maker maker(m, l, limit, pool);
+    bar.stage("quantise", all);
+    const auto share_out = [&](tbb::flow_control &flow) -> batch_ptr {
+        if (next == all || !good) {
+            flow.stop();
+            return nullptr;
+        }
+        const auto b = std::make_shared<batch>();
+        b->first = next;
+        b->count = std::min(batch_bricks, all - next);
+        next += b->count;
+        return b;
+    };
+    const auto work = [&](const batch_ptr &b) {
+        quantise_batch(vol, l, f, *b);
+        return b;
+    };
+    const auto store = [&](const batch_ptr &b) {
+        good = good && maker.add(*b);
+        bar.advance(b->count);
+    };
+    tbb::parallel_pipeline(4 * size_t(tbb::this_task_arena::max_concurrency()),
+                           tbb::make_filter<void, batch_ptr>(
+                               tbb::filter_mode::serial_in_order, share_out) &
+                               tbb::make_filter<batch_ptr, batch_ptr>(
+                                   tbb::filter_mode::parallel, work) &
+                               tbb::make_filter<batch_ptr, void>(
+                                   tbb::filter_mode::serial_in_order, store));
+    if (good)
+        maker.finish();
+    return good;
+}
+
+} // namespace bake

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: MIT
+#include "report.hpp"
+
+#include <cmath>
+
+namespace bake
+{
+
+namespace
+{
+
+// Text as a JSON string. Bytes above 0x7f pass as the UTF-8 they should be.
+std::string quoted(const std::string &s)
+{
+    std::string out = "\"";
+
+    for (const char c : s) {
+        if (c == '"' || c == '\\')
+            out += std::string("\\") + c;
+        else if (uint8_t(c) < 0x20 || c == 0x7f)
+            out += text("\\u%04x", unsigned(uint8_t(c)));
+        else
+            out += c;
+    }
+    return out + '"';
+}
+
+// An object, a field a line.
+class json_object
+{
+  public:
+    explicit json_object(int depth = 1) : indent_(size_t(2 * depth), ' ')
+    {
+    }
+
+    void raw(const char *key, const std::string &value)
+    {
+        body_ += (body_.empty() ? "\n" : ",\n") + indent_ + quoted(key) + ": " +
+                 value;
+    }
+    void add(const char *key, const std::string &v)
+    {
+        raw(key, quoted(v));
+    }
+    void add(const char *key, uint64_t v)
+    {
+        raw(key, std::to_string(v));
+    }
+    void add(const char *key, bool v)
+    {
+        raw(key, v ? "true" : "false");
+    }
+    void add(const char *key, double v)
+    {
+        // JSON has neither infinities nor NaN.
+        raw(key, std::isfinite(v) ? text("%.9g", v) : "null");
+    }
+    std::string close() const
+    {
+        return "{" + body_ + "\n" + indent_.substr(2) + "}";
+    }
+
+  private:
+    std::string indent_, body_;
+};
+
+std::string vector_of(ijk v)
+{
+    return text("[%d, %d, %d]", v.x, v.y, v.z);
+}
+
+double voxel_size(const volume &vol)
+{
+    return std::hypot(vol.world[0], vol.world[4], vol.world[8]);
+}
+
+uint64_t shared(const brick_pool &p)
+{
+    return p.occupied - p.bricks;
+}
+
+std::string grid_json(const report &r)
+{
+    json_object o(2);
+
+    o.add("name", r.src->name);
+    o.add("type", r.src->type);
+    o.add("class", r.src->grid_class);
+    o.add("active_voxels", r.src->active);
+    o.add("background", r.src->background);
+    o.add("converted_level_set", r.src->from_level_set);
+    o.add("nan", r.src->bad.nan);
+    o.add("infinite", r.src->bad.infinite);
+    o.add("negative", r.src->bad.negative);
+    return o.close();
+}
+
+std::string volume_json(const report &r)
+{
+    json_object o(2);
+
+    o.add("lod", uint64_t(r.lod));
+    o.add("resampled", r.resampled);
+    o.add("voxels", r.m->voxels);
+    o.raw("box_min", vector_of(r.m->tight.lo));
+    o.raw("box_max", vector_of(r.m->tight.hi));
+    o.add("voxel_size", voxel_size(r.src->vol));
+    o.add("density_max", double(r.pool->format.density_max));
+    o.add("density_mean", r.m->mean);
+    return o.close();
+}
+
+std::string asset_json(const report &r)
+{
+    json_object o(2);
+
+    o.add("format", std::string(r.pool->format.name()));
+    o.add("asked", r.asked_format);
+    o.add("why", r.why);
+    o.add("side", uint64_t(r.pool->format.side));
+    o.raw("cells", vector_of(r.l->cells));
+    o.raw("origin", vector_of(r.l->origin));
+    o.add("occupied_cells", r.pool->occupied);
+    o.add("bricks", r.pool->bricks);
+    o.add("shared_bricks", shared(*r.pool));
+    o.add("bytes", r.size.total);
+    o.add("cell_bytes", r.size.cell);
+    o.add("pool_bytes", r.size.pool);
+    o.add("range_bytes", r.size.range);
+    o.add("name_bytes", r.size.name);
+    return o.close();
+}
+
+std::string error_json(const report &r)
+{
+    json_object o(2);
+
+    o.add("rmse", r.pool->error.rmse);
+    o.add("max", r.pool->error.worst);
+    o.add("rmse_over_mean", r.pool->error.rmse / r.m->mean);
+    o.add("max_over_mean", r.pool->error.worst / r.m->mean);
+    return o.close();
+}
+
+std::string seconds_json(const stage_seconds &s)
+{
+    json_object o(2);
+
+    o.add("read", s.read);
+    o.add("voxels", s.voxels);
+    o.add("quantise", s.quantise);
+    o.add("write", s.write);
+    o.add("total", s.total());
+    return o.close();
+}
+
+} // namespace
+
+std::string to_json(const report &r)
+{
+    json_object o;
+
+    o.add("input", r.input);
+    o.add("output", r.output);
+    o.raw("grid", grid_json(r));
+    o.raw("volume", volume_json(r));
+    o.raw("asset", asset_json(r));
+    o.raw("quantisation_error", error_json(r));
+    o.raw("seconds", seconds_json(r.seconds));
+    return o.close() + "\n";
+}
+
+std::string summary(const report &r)
+{
+    const ijk lo = r.m->tight.lo, hi = r.m->tight.hi;
+    const brick_pool &p = *r.pool;
+    std::string s;
+
+    s += text("%s: grid \"%s\", %d x %d x %d voxels, %llu with density, "
+              "max %.6g, mean %.6g\n",
+              r.input.c_str(), r.src->name.c_str(), hi.x - lo.x + 1,
+              hi.y - lo.y + 1, hi.z - lo.z + 1, (unsigned long long)r.m->voxels,
+              double(p.format.density_max), r.m->mean);
+    s += text("format %s%s: %s\n", p.format.name(),
+              p.format.side == apron_side ? " with apron" : "", r.why.c_str());
+    s += text("error: rmse %.3g, max %.3g (%.3g %% and %.3g %% of the "
+              "mean)\n",
+              p.error.rmse, p.error.worst, 100 * p.error.rmse / r.m->mean,
+              100 * p.error.worst / r.m->mean);
+    s += text("%d x %d x %d cells, %llu occupied, %llu bricks (%llu "
+              "shared)\n",
+              r.l->cells.x, r.l->cells.y, r.l->cells.z,
+              (unsigned long long)p.occupied, (unsigned long long)p.bricks,
+              (unsigned long long)shared(p));
+    s += text("%s: %llu bytes, %.2f s (read %.2f, voxels %.2f, quantise "
+              "%.2f, write %.2f)\n",
+              r.output.c_str(), (unsigned long long)r.size.total,
+              r.seconds.total(), r.seconds.read, r.seconds.voxels,
+              r.seconds.quantise, r.seconds.write);
+    return s;
+}
+
+} // namespace bake

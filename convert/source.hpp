@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+//
+// Reading: which grid of which file, and whether it can be a density.
+#ifndef BRUME_CONVERT_SOURCE_HPP
+#define BRUME_CONVERT_SOURCE_HPP
+
+#include <openvdb/openvdb.h>
+
+#include <string>
+#include <vector>
+
+#include "progress.hpp"
+#include "volume.hpp"
+
+namespace bake
+{
+
+struct source {
+    std::string name, type, grid_class;
+    volume vol;
+    bad_voxels bad;
+    uint64_t active = 0;
+    double background = 0;
+    bool from_level_set = false;
+};
+
+// Read the density that `choice` names ("", a name, or "#index") from an
+// OpenVDB or NanoVDB file. Throws `failure` with one line, or several with a
+// list of grids when it is for the user to choose.
+source read_source(const std::string &path, const std::string &choice,
+                   bool level_set_to_fog, progress &bar);
+
+// What the list of grids says of each.
+struct grid_entry {
+    std::string name, type, grid_class;
+    uint64_t voxels;
+};
+
+// The index of the chosen grid.
+size_t choose_grid(const std::vector<grid_entry> &grids,
+                   const std::string &choice);
+
+// source_nano.cpp: the same for a NanoVDB file, as an OpenVDB grid.
+openvdb::GridBase::Ptr read_nano(const std::string &path,
+                                 const std::string &choice);
+
+} // namespace bake
+
+#endif
