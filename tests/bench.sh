@@ -3,15 +3,15 @@
 # bench.sh: what the choices of order, apron, format, skipping and threads cost
 # and gain, as ratios of times and bytes. Asserts nothing.
 #
-#   BUILD=dir  our programs         RUNS=n    runs of each (9)
-#   DATA=dir   real volumes         SIZE=WxH  of the pictures (960x540)
+#   BUILD=dir  our programs         RUNS=n    runs of each (7)
+#   DATA=dir   real volumes         SIZE=WxH  of the pictures (640x360)
 #
 # Two commands run in turn, A B A B ...; a ratio is the median of the ratios
 # B/A of neighbours, which a machine that is busy with other things disturbs
 # least. Times are of whole processes: start, checking the asset, writing the
 # picture. All but the last line of a volume use one thread.
 set -eu
-: "${BUILD:=build}" "${DATA:=../shared/data}" "${RUNS:=9}" "${SIZE:=960x540}"
+: "${BUILD:=build}" "${DATA:=../shared/data}" "${RUNS:=7}" "${SIZE:=640x360}"
 dir=$BUILD/bench
 mkdir -p "$dir"
 
@@ -22,7 +22,7 @@ case $(date +%N) in
     ;;
 esac
 
-# The two light models, lookups as named.
+# A quick scene and a fine one.
 fast="--set filter=nearest --set light=log --set light_samples=8
     --set light_step=1 --set step=1"
 fine="--set filter=trilinear --set light=uniform --set light_samples=32

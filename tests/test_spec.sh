@@ -31,6 +31,8 @@ for type in cumulus plume block voxel; do
     conforms $type "$out/$type.vdb"
 done
 conforms "cumulus at half resolution" "$out/cumulus.vdb" --lod 1
+# Bricks at both ends of a row: their numbers must not get mixed up.
+conforms "cumulus in linear order" "$out/cumulus.vdb" --order linear
 for file in wdas_cloud_sixteenth.vdb openvdb_smoke1.vdb \
     robustness/scivis_grid0.vdb robustness/serg_dragon_with_xform.vdb; do
     if [ -f "$DATA/$file" ]; then

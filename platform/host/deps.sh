@@ -3,6 +3,10 @@
 # deps.sh PACKAGE...: installs the Debian packages that are missing, after
 # saying which. Touches nothing when none is.
 set -eu
+command -v dpkg-query >/dev/null || {
+    echo "deps: not a Debian system; taken to be there: $*" >&2
+    exit 0
+}
 missing=
 for package; do
     status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null) ||
