@@ -1,14 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# Tests of brume-bake. BUILD is the folder of brume-bake (and of make_vdbs and
-# section_dump, which are compiled when they are not there), DATA that of the
-# real volumes: without them what needs them is skipped by name.
+# Tests of brume-bake. BUILD is the folder of brume-bake, tests/make_vdbs and
+# tests/section_dump, DATA that of the real volumes: without them what needs
+# them is skipped by name.
 BUILD=${BUILD:-build}
 DATA=${DATA:-../shared/data}
-CC=${CC:-cc}
-CXX=${CXX:-c++}
-here=$(dirname "$0")
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 trap 'exit 1' HUP INT TERM
@@ -90,16 +87,7 @@ if [ ! -x "$bake" ]; then
     exit 1
 fi
 dump=$BUILD/tests/section_dump
-if [ ! -x "$dump" ]; then
-    dump=$work/section_dump
-    $CC -std=c99 -O2 "$here/section_dump.c" -o "$dump" -lm || exit 1
-fi
 make_vdbs=$BUILD/tests/make_vdbs
-if [ ! -x "$make_vdbs" ]; then
-    make_vdbs=$work/make_vdbs
-    $CXX -std=c++17 -O1 "$here/make_vdbs.cpp" -o "$make_vdbs" -lopenvdb \
-        -ltbb -lImath || exit 1
-fi
 v=$work/vdb
 mkdir "$v"
 "$make_vdbs" "$v" || exit 1
