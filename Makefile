@@ -21,8 +21,7 @@ CONVERT_FLAGS = -std=c++17 -ffp-contract=off -Wall -Wextra -Wshadow -Werror \
 CONVERT_LIBS = -lopenvdb -ltbb -lImath -lblosc -lz -lpthread
 PACKAGES = gcc g++ libc6-dev libopenvdb-dev libnanovdb-dev libboost-dev \
 	libblosc-dev zlib1g-dev
-TEST_PACKAGES = $(PACKAGES) clang libclang-rt-14-dev binutils netpbm pngcheck \
-	libopenvdb-tools
+TEST_PACKAGES = $(PACKAGES) clang libclang-rt-14-dev binutils netpbm pngcheck
 
 include platform/$(CONF)/conf.mk
 

@@ -330,6 +330,10 @@ class baker
 
     void write()
     {
+        // Their pages then hold the file on its way to the disk, which is
+        // quicker than to ask the kernel for new ones.
+        if (!dump_)
+            src_.vol.drop_voxels();
         r_.size = write_asset(*asset_, src_.vol, m_, l_, pool_, src_.name);
         asset_->finish();
         if (dump_) {

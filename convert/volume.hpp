@@ -42,6 +42,13 @@ struct volume {
     std::vector<block> blocks;
     // Owns what the blocks point to.
     std::vector<std::unique_ptr<float[]>> chunks;
+
+    // Keeps the transform.
+    void drop_voxels()
+    {
+        blocks.clear();
+        chunks.clear();
+    }
 };
 
 // Figures over the non-zero voxels.

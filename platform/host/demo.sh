@@ -9,11 +9,11 @@ mkdir -p "$out"
 # draw NAME VOLUME OPTIONS...
 draw()
 {
-    name=$1 volume=$2
+    picture=$out/$1.png volume=$2
     shift 2
-    "$BUILD/brume" render "$volume" "$@" -o "$out/$name.png"
+    "$BUILD/brume" render "$volume" "$@" -o "$picture"
     pictures="$pictures
-  $out/$name.png"
+  $picture"
 }
 
 pictures=
@@ -34,5 +34,5 @@ else
 fi
 echo "pictures:$pictures"
 echo "try:
-  $BUILD/brume render $out/$name.brume --set sun=60,20 -o cloud.png
-  $BUILD/brume info $out/$name.brume"
+  $BUILD/brume render $volume --set sun=60,20 -o cloud.png
+  $BUILD/brume info $volume"
