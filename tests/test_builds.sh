@@ -51,7 +51,7 @@ try gcc_O0 22 gcc -O0
 try gcc_Os 22 gcc -Os
 try gcc_O3_native 22 gcc -O3 -march=native
 try gcc_unsigned_char 22 gcc -O2 -funsigned-char -fwrapv
-try gcc_mul32 22 gcc -O2 -DBRUME_MUL64=0
+try gcc_mul32 22 gcc -O2 -DBRUME_MUL64=0 -DBRUME_CLZ=0
 # shellcheck disable=SC2086
 try gcc_sanitizers 22 gcc -O1 $sanitize
 try gcc_checked 22 gcc -O2 -DBRUME_FIXED_DEBUG
@@ -61,6 +61,18 @@ try clang_O3 22 clang -O3
 try clang_sanitizers 22 clang -O1 $sanitize -DBRUME_FIXED_DEBUG
 # shellcheck disable=SC2086
 try gcc_lean 10 gcc -Os $lean
+
+# Truncated, flipped and forged assets, where a bad access would trap.
+hostile_assets()
+{
+    # shellcheck disable=SC2086
+    gcc -std=c11 -D_POSIX_C_SOURCE=200809L -O1 $sanitize -Icore -Itests \
+        tests/test_asset.c tests/support/asset_builder.c core/*.c \
+        -o "$out/hostile" && "./$out/hostile" >"$out/hostile.log" 2>&1 ||
+        { tail -n 20 "$out/hostile.log"; return 1; }
+}
+check "hostile assets under ASan and UBSan" hostile_assets
+
 try gcc_trilinear_only 7 gcc -O2 -DBRUME_WITH_NEAREST=0
 try gcc_u4r_only 3 gcc -O2 -DBRUME_WITH_U8=0 -DBRUME_WITH_U8R=0
 finish
