@@ -5,13 +5,8 @@
 
 uint32_t brume_rsqrt(uint32_t x, unsigned *shift)
 {
-    unsigned s = 0;
-    BRUME_CHECK(x != 0);
-    while (x < 0x40000000u) {
-        x <<= 2;
-        s++;
-    }
-    *shift = s;
+    *shift = leading_zeros(x) >> 1;
+    x <<= 2 * *shift;
     /* Now x in [1/4, 1) and y = 1 / sqrt(x) in (1, 2], held in Q2.30.
      * First guess: the line 2.26 - 1.32 x, within 14 % of y. */
     uint32_t y = 2426656522u - mul_hi_floor(x, 1417339208u);
@@ -52,9 +47,8 @@ bool brume_normalise(int32_t v[3])
     for (; all >= 0x80000000u; all >>= 1)
         for (int i = 0; i < 3; i++)
             m[i] >>= 1;
-    for (; all < 0x40000000u; all <<= 1)
-        for (int i = 0; i < 3; i++)
-            m[i] <<= 1;
+    for (int i = 0; i < 3; i++)
+        m[i] <<= leading_zeros(all) - 1u;
     uint32_t square = mul_hi_floor(m[0], m[0]) + mul_hi_floor(m[1], m[1]) +
                       mul_hi_floor(m[2], m[2]);
     unsigned shift;
@@ -103,11 +97,11 @@ void brume_sincos(uint32_t turn, int32_t *sine, int32_t *cosine)
 
 struct brume_number brume_number_of(uint32_t m, int32_t e)
 {
-    struct brume_number n = {m, e};
-    if (m == 0)
-        n.e = 0;
-    for (; n.m != 0 && n.m < 0x80000000u; n.m <<= 1)
-        n.e--;
+    struct brume_number n = {0, 0};
+    if (m != 0) {
+        n.m = m << leading_zeros(m);
+        n.e = e - (int32_t)leading_zeros(m);
+    }
     return n;
 }
 
