@@ -93,6 +93,63 @@ static void project(struct brume_frame *f, const int32_t ahead[3],
     scale(f->per_y, up, per_pixel);
 }
 
+/// Outline ///
+
+/* How far outside of the pool a ray must pass to be told apart from those
+ * that rounding may move into it: 1/16 voxel. A position is off its ray by
+ * less than 2^-9 voxels where it enters. */
+#define OUTLINE_MARGIN 0x1000
+
+/* Of the pool seen along the third axis, from the eye at (0, 0), in Q18.13:
+ * the rectangle's corners that touch the outline. `c` holds the ends of both
+ * sides. A corner is the first counterclockwise when no other is clockwise of
+ * it. */
+static void outline_of(struct brume_outline out[2], int32_t c[2][2])
+{
+    int32_t first[2] = {c[0][0], c[1][0]}, last[2] = {c[0][0], c[1][0]};
+    for (int n = 1; n < 4; n++) {
+        int32_t a = c[0][n & 1], b = c[1][n >> 1];
+        if (product_less(first[0], b, first[1], a)) {
+            first[0] = a;
+            first[1] = b;
+        }
+        if (product_less(a, last[1], b, last[0])) {
+            last[0] = a;
+            last[1] = b;
+        }
+    }
+    out[0].a = -first[0];
+    out[0].b = -first[1];
+    out[1].a = last[0];
+    out[1].b = last[1];
+}
+
+/* From outside the pool, two lines for each pair of axes: the ray passes
+ * between them or misses. A pair in which the eye is inside has none. */
+static void set_outline(struct brume_frame *f)
+{
+    int32_t ends[3][2];
+    f->outlines = 0;
+    for (int i = 0; i < 3; i++) {
+        /* Both fit: |eye| < 2^31, limit < 2^31. Rounded outwards. */
+        int64_t low = -(int64_t)f->eye[i] - OUTLINE_MARGIN;
+        int64_t high = (int64_t)f->limit[i] - f->eye[i] + OUTLINE_MARGIN;
+        ends[i][0] = (int32_t)(low / 8) - 1;
+        ends[i][1] = (int32_t)(high / 8) + 1;
+    }
+    for (uint8_t i = 0; i < 3; i++) {
+        uint8_t j = (uint8_t)((i + 1) % 3);
+        int32_t c[2][2] = {{ends[i][0], ends[i][1]}, {ends[j][0], ends[j][1]}};
+        if (c[0][0] < 0 && c[0][1] > 0 && c[1][0] < 0 && c[1][1] > 0)
+            continue;
+        struct brume_outline *out = &f->outline[f->outlines];
+        outline_of(out, c);
+        out[0].i = out[1].i = i;
+        out[0].j = out[1].j = j;
+        f->outlines += 2;
+    }
+}
+
 int brume_camera_begin(struct brume_frame *frame,
                        const struct brume_scene *scene)
 {
@@ -108,10 +165,21 @@ int brume_camera_begin(struct brume_frame *frame,
     int32_t bias = scene->filter == BRUME_TRILINEAR ? 0x80 : 0x8000;
     for (int i = 0; i < 3; i++)
         frame->eye[i] = scene->eye[i] + bias;
+    set_outline(frame);
     return BRUME_OK;
 }
 
 /// Rays ///
+
+/* The ray of a pixel's centre, of any length. Exact: linear in x and y. */
+static void direction_of(int32_t out[3], const struct brume_frame *f,
+                         uint32_t x, uint32_t y)
+{
+    int32_t u = (int32_t)(2u * x + 1u) - (int32_t)f->width;
+    int32_t v = (int32_t)f->height - (int32_t)(2u * y + 1u);
+    for (int i = 0; i < 3; i++)
+        out[i] = f->ahead[i] + u * f->per_x[i] + v * f->per_y[i];
+}
 
 uint32_t brume_inverse_of_move(int32_t move)
 {
@@ -201,7 +269,7 @@ static bool enter(struct brume_ray *ray, const struct brume_frame *f,
         uint32_t way =
             (mul_hi_floor(m, t) << 2 | (m * t) >> 30) + ((m * t) >> 29 & 1u);
         ray->position[i] = (uint32_t)f->eye[i] + (unit[i] < 0 ? 0u - way : way);
-        ray->move[i] = mul_signed_round(unit[i], f->step, 2);
+        ray->line.move[i] = mul_signed_round(unit[i], f->step, 2);
     }
     if (inside(f, ray->position))
         return true;
@@ -210,7 +278,7 @@ static bool enter(struct brume_ray *ray, const struct brume_frame *f,
         if (tries == 0)
             return false;
         for (int i = 0; i < 3; i++)
-            ray->position[i] += (uint32_t)ray->move[i];
+            ray->position[i] += (uint32_t)ray->line.move[i];
     }
     return true;
 }
@@ -221,13 +289,14 @@ static uint32_t count_inside(const struct brume_ray *ray,
 {
     uint32_t count = 0xffffffffu;
     for (int i = 0; i < 3; i++) {
-        uint32_t move = magnitude(ray->move[i]);
+        uint32_t move = magnitude(ray->line.move[i]);
         if (move == 0)
             continue;
-        uint32_t room = ray->move[i] < 0 ? ray->position[i]
-                                         : f->limit[i] - 1u - ray->position[i];
+        uint32_t room = ray->line.move[i] < 0
+                            ? ray->position[i]
+                            : f->limit[i] - 1u - ray->position[i];
         /* The product is the quotient or one less. */
-        uint32_t n = mul_hi_floor(room, ray->inverse[i]);
+        uint32_t n = mul_hi_floor(room, ray->line.inverse[i]);
         if ((n + 1u) * move <= room) /* < 2^31 + 2^25 */
             n++;
         if (n < count)
@@ -236,17 +305,18 @@ static uint32_t count_inside(const struct brume_ray *ray,
     return count + 1u;
 }
 
-static void begin_light(struct brume_ray *ray, const struct brume_frame *f,
-                        uint32_t jitter)
+void brume_light_begin(struct brume_light_ray *light,
+                       const struct brume_frame *frame, uint32_t jitter)
 {
-    bool uniform = f->light == BRUME_UNIFORM;
+    const struct brume_frame *f = frame;
+    bool uniform = f->light_kind == BRUME_UNIFORM;
     uint32_t first =
         uniform ? f->light_step >> 1
                 : f->light_step + mul_hi_floor(jitter << 16, f->light_step);
     uint32_t most = 0, n = f->light_samples;
     for (int i = 0; i < 3; i++) {
-        ray->light[i] = mul_signed_round(f->sun[i], first, 2);
-        uint32_t m = magnitude(ray->light[i]);
+        light->first[i] = mul_signed_round(f->sun[i], first, 2);
+        uint32_t m = magnitude(light->first[i]);
         most = m > most ? m : most;
     }
     /* A doubled distance of 32768 voxels on any axis is out of the pool,
@@ -254,31 +324,51 @@ static void begin_light(struct brume_ray *ray, const struct brume_frame *f,
     if (!uniform)
         while (n > 0 && most >> (32 - n) != 0)
             n--;
-    ray->light_samples = n;
+    light->samples = n;
+}
+
+static uint32_t jitter_of(const struct brume_frame *f, uint32_t x, uint32_t y,
+                          uint32_t channel)
+{
+    return f->jitter >> channel & 1u
+               ? brume_noise_value(f->noise, x, y, f->frame, channel)
+               : 0;
+}
+
+bool brume_rays_miss(const struct brume_frame *frame, uint32_t x, uint32_t y,
+                     uint32_t n)
+{
+    int32_t d[3], e[3];
+    direction_of(d, frame, x, y);
+    direction_of(e, frame, x + n - 1u, y);
+    for (uint32_t k = 0; k < frame->outlines; k++) {
+        const struct brume_outline *o = &frame->outline[k];
+        if (product_less(d[o->i], o->b, d[o->j], o->a) &&
+            product_less(e[o->i], o->b, e[o->j], o->a))
+            return true;
+    }
+    return false;
 }
 
 bool brume_ray_begin(struct brume_ray *ray, const struct brume_frame *frame,
                      uint32_t x, uint32_t y)
 {
     const struct brume_frame *f = frame;
-    int32_t u = (int32_t)(2u * x + 1u) - (int32_t)f->width;
-    int32_t v = (int32_t)f->height - (int32_t)(2u * y + 1u);
     int32_t unit[3];
-    uint32_t jitter[2], t_in, t_out;
-    for (int i = 0; i < 3; i++)
-        unit[i] = f->ahead[i] + u * f->per_x[i] + v * f->per_y[i];
+    uint32_t t_in, t_out;
+    direction_of(unit, f, x, y);
     brume_normalise(unit);
-    if (!clip(f, unit, &t_in, &t_out))
-        return false;
-    for (uint32_t c = 0; c < 2; c++)
-        jitter[c] = f->jitter >> c & 1u
-                        ? brume_noise_value(f->noise, x, y, f->frame, c)
-                        : 0;
-    if (!enter(ray, f, unit, jitter[0], t_in, t_out))
+    if (!clip(f, unit, &t_in, &t_out) ||
+        !enter(ray, f, unit, jitter_of(f, x, y, 0), t_in, t_out))
         return false;
     for (int i = 0; i < 3; i++)
-        ray->inverse[i] = brume_inverse_of_move(ray->move[i]);
+        ray->line.inverse[i] = brume_inverse_of_move(ray->line.move[i]);
     ray->count = count_inside(ray, f);
-    begin_light(ray, f, jitter[1]);
+    if (!f->skip)
+        for (int i = 0; i < 3; i++)
+            ray->line.inverse[i] = 0;
+    ray->light = f->light;
+    if (f->jitter & BRUME_JITTER_LIGHT)
+        brume_light_begin(&ray->light, f, jitter_of(f, x, y, 1));
     return true;
 }

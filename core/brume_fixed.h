@@ -15,14 +15,29 @@
 
 #if defined(__GNUC__)
 #define BRUME_INLINE static inline __attribute__((always_inline))
+#define BRUME_OPAQUE(v) __asm__("" : "+r"(v))
 #else
 #define BRUME_INLINE static inline
+#define BRUME_OPAQUE(v) ((void)0)
+#endif
+#if defined(__GNUC__) && __GNUC__ >= 7 || defined(__clang__)
+#define BRUME_FALLTHROUGH __attribute__((fallthrough))
+#else
+#define BRUME_FALLTHROUGH ((void)0)
 #endif
 
 #ifdef BRUME_FIXED_DEBUG
 #define BRUME_CHECK(cond) ((cond) ? (void)0 : __builtin_trap())
 #else
 #define BRUME_CHECK(cond) ((void)0)
+#endif
+
+/* Counting: BRUME_CONFIG may define this to see how often the march does what.
+ * By default it is nothing. Names: rays_in_pool, view_samples (lookups on view
+ * rays), lit_samples (those with density enough), light_samples (lookups on
+ * light rays). */
+#ifndef BRUME_TALLY
+#define BRUME_TALLY(name, n) ((void)0)
 #endif
 
 /* One instruction for a 32x32 -> 64 bit product? Cortex-M0 has none, and its
@@ -83,6 +98,12 @@ BRUME_INLINE uint32_t magnitude(int32_t a)
     return a < 0 ? 0u - (uint32_t)a : (uint32_t)a;
 }
 
+/* All ones for a negative word, else 0. */
+BRUME_INLINE uint32_t sign_mask(int32_t a)
+{
+    return a < 0 ? 0xffffffffu : 0;
+}
+
 /* The signed word of a magnitude and a sign. m <= 2^31 - 1. */
 BRUME_INLINE int32_t with_sign(uint32_t m, bool negative)
 {
@@ -114,6 +135,26 @@ BRUME_INLINE int32_t mul_both_signed_round(int32_t a, int32_t b, unsigned up)
 {
     int32_t r = mul_signed_round(a, magnitude(b), up);
     return b < 0 ? -r : r;
+}
+
+/* a * b < c * d. Any operands but -2^31. */
+BRUME_INLINE bool product_less(int32_t a, int32_t b, int32_t c, int32_t d)
+{
+#if BRUME_MUL64
+    return (int64_t)a * b < (int64_t)c * d;
+#else
+    /* Magnitudes as two words, then signs; a product of 0 has either. */
+    uint32_t ma = magnitude(a), mb = magnitude(b);
+    uint32_t mc = magnitude(c), md = magnitude(d);
+    uint32_t hi = mul_hi_floor(ma, mb), lo = ma * mb;
+    uint32_t hi2 = mul_hi_floor(mc, md), lo2 = mc * md;
+    bool neg = (a < 0) != (b < 0), neg2 = (c < 0) != (d < 0);
+    bool less = hi < hi2 || (hi == hi2 && lo < lo2);
+    bool equal = hi == hi2 && lo == lo2;
+    if (neg != neg2)
+        return neg && (hi | lo | hi2 | lo2) != 0;
+    return neg ? !less && !equal : less;
+#endif
 }
 
 /* A little-endian word of the asset. */

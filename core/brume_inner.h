@@ -70,20 +70,27 @@ uint32_t brume_noise_value(int noise, uint32_t x, uint32_t y, uint32_t frame,
  * rounds them. */
 struct brume_ray {
     uint32_t position[3]; /* first sample in the pool, Q16.16 */
-    int32_t move[3];      /* from one sample to the next, Q16.16 */
-    uint32_t inverse[3];  /* floor((2^32 - 1) / |move|) */
-    uint32_t count;       /* samples in the pool */
-    int32_t light[3];     /* to the first light sample, Q16.16 */
-    uint32_t light_samples;
+    struct brume_line line;
+    uint32_t count; /* samples in the pool */
+    struct brume_light_ray light;
 };
 
 /* Basis of the camera into frame->eye, ahead, per_x and per_y. */
 int brume_camera_begin(struct brume_frame *frame,
                        const struct brume_scene *scene);
 
+/* Do the rays of all n pixels from (x, y) to the right pass the pool by? Says
+ * no when in doubt. */
+bool brume_rays_miss(const struct brume_frame *frame, uint32_t x, uint32_t y,
+                     uint32_t n);
+
 /* The ray of pixel (x, y). False when no sample falls in the pool. */
 bool brume_ray_begin(struct brume_ray *ray, const struct brume_frame *frame,
                      uint32_t x, uint32_t y);
+
+/* The light ray of a jitter in Q0.16; frame has its sun and light steps. */
+void brume_light_begin(struct brume_light_ray *light,
+                       const struct brume_frame *frame, uint32_t jitter);
 
 /* floor((2^32 - 1) / |move|), all ones for no move. */
 uint32_t brume_inverse_of_move(int32_t move);

@@ -10,75 +10,151 @@
 
 /// Leaping ///
 
-/* How many samples to move from a position in an empty cell: at least 1, and
- * such that all between lie in cells that are empty by the cell's distance d,
- * that is, less than d cells away along each axis. `margin` is a voxel where a
- * lookup reads one voxel beyond, else 0.
- *
- * Along an axis the way to the last such position is, forwards,
- *     (d << 19) - 1 - (p & mask) = ((d - 1) << 19) + (~p & mask),
- * and backwards ((d - 1) << 19) + (p & mask). `inverse` is rounded down, so
- * the quotient is never too large. */
-BRUME_INLINE uint32_t leap(const struct brume_frame *f, const uint32_t p[3],
-                           const int32_t move[3], const uint32_t inverse[3],
-                           uint32_t d)
+/* Samples along one axis from p to the last position whose cell is less than
+ * `cell` cells away. `far` = (cell - 1) << 19: the way is, forwards,
+ *     (cell << 19) - 1 - (p & mask) = far + (~p & mask),
+ * and backwards far + (p & mask). `inverse` is rounded down, so the quotient
+ * is never too large. */
+BRUME_INLINE uint32_t leap_axis(uint32_t p, int32_t move, uint32_t inverse,
+                                uint32_t far, uint32_t margin)
 {
     const uint32_t mask = (1u << 19) - 1u;
-    uint32_t far = (d - 1u) << 19, n = 0xfffffffeu;
-    for (int i = 0; i < 3; i++) {
-        uint32_t room = move[i] < 0 ? far + (p[i] & mask)
-                                    : far + (~p[i] & mask) - f->leap_margin;
-        uint32_t m = mul_hi_floor(room, inverse[i]);
-        n = m < n ? m : n;
-    }
-    n++;
-    return n < f->max_leap ? n : f->max_leap;
+    uint32_t forwards = ~sign_mask(move);
+    uint32_t room = far + ((p ^ forwards) & mask) - (margin & forwards);
+    return mul_hi_floor(room, inverse);
+}
+
+/* How many samples to move from a position in an empty cell: at least 1, and
+ * such that all between lie in cells that are empty by the cell's distance,
+ * its low byte. The margin is a voxel where a lookup reads one voxel beyond,
+ * else 0. A line whose `inverse` is 0 moves by one: skipping off. */
+BRUME_INLINE uint32_t leap(const struct brume_frame *f,
+                           const struct brume_line *line, uint32_t x,
+                           uint32_t y, uint32_t z, uint32_t cell,
+                           struct kernel k)
+{
+    uint32_t margin = k.trilinear ? f->leap_margin : 0;
+    uint32_t far = (cell << 19) - (1u << 19); /* the shift drops the flag */
+    uint32_t n = leap_axis(x, line->move[0], line->inverse[0], far, margin);
+    uint32_t m = leap_axis(y, line->move[1], line->inverse[1], far, margin);
+    n = m < n ? m : n;
+    m = leap_axis(z, line->move[2], line->inverse[2], far, margin);
+    n = m < n ? m : n;
+    return n + 1u;
 }
 
 /// Light ///
 
-/* Sum of d * 2^k over the samples at p + light * 2^k. < 2^32: a 16-bit code
- * times 2^16 - 1. The pool is convex: out once, out for good. From one sample
- * to the next, q = p + light * 2^k becomes 2 q - p. */
-BRUME_INLINE uint32_t sum_log(const struct brume_frame *f,
-                              const struct brume_ray *ray, const uint32_t p[3],
-                              struct kernel k)
+/* Is sample i of the light ray, at p + light * 2^i, in the pool? */
+BRUME_INLINE bool light_inside(const struct brume_frame *f,
+                               const struct brume_light_ray *light, uint32_t px,
+                               uint32_t py, uint32_t pz, uint32_t i)
 {
-    uint32_t x = p[0] + (uint32_t)ray->light[0];
-    uint32_t y = p[1] + (uint32_t)ray->light[1];
-    uint32_t z = p[2] + (uint32_t)ray->light[2];
-    uint32_t end = 1u << ray->light_samples, sum = 0, d;
-    for (uint32_t w = 1; w != end; w += w) {
-        if (x >= f->limit[0] || y >= f->limit[1] || z >= f->limit[2])
-            break;
-        if (density_at(f, x, y, z, &d, k))
-            sum += d * w;
-        x = 2 * x - p[0];
-        y = 2 * y - p[1];
-        z = 2 * z - p[2];
-    }
-    return sum;
+    return px + ((uint32_t)light->first[0] << i) < f->limit[0] &&
+           py + ((uint32_t)light->first[1] << i) < f->limit[1] &&
+           pz + ((uint32_t)light->first[2] << i) < f->limit[2];
 }
 
-/* Sum of d over the samples at p + light + i * light_move; < 2^28. */
-BRUME_INLINE uint32_t sum_uniform(const struct brume_frame *f,
-                                  const struct brume_ray *ray,
-                                  const uint32_t p[3], struct kernel k)
+/* How many samples of the light ray are in the pool, which is convex: out
+ * once, out for good. Searched from n, what the last position had. */
+BRUME_INLINE uint32_t light_reach(const struct brume_frame *f,
+                                  const struct brume_light_ray *light,
+                                  uint32_t px, uint32_t py, uint32_t pz,
+                                  uint32_t n)
 {
-    uint32_t q[3], n = ray->light_samples, sum = 0, m, d;
-    for (int i = 0; i < 3; i++)
-        q[i] = p[i] + (uint32_t)ray->light[i];
+    if (n < light->samples && light_inside(f, light, px, py, pz, n)) {
+        do
+            n++;
+        while (n < light->samples && light_inside(f, light, px, py, pz, n));
+        return n;
+    }
+    while (n > 0 && !light_inside(f, light, px, py, pz, n - 1))
+        n--;
+    return n;
+}
+
+/* d * 2^i of sample i, which is in the pool. */
+BRUME_INLINE uint32_t light_sample(const struct brume_frame *f, uint32_t px,
+                                   uint32_t py, uint32_t pz, uint32_t lx,
+                                   uint32_t ly, uint32_t lz, uint32_t i,
+                                   struct kernel k)
+{
+    uint32_t d;
+    BRUME_TALLY(light_samples, 1);
+    if (!density_at(f, px + (lx << i), py + (ly << i), pz + (lz << i), &d, k))
+        return 0;
+    return d << i;
+}
+
+/* Sum of d * 2^i over the first n samples, all in the pool. < 2^32: a 16-bit
+ * code times 2^16 - 1. */
+BRUME_INLINE uint32_t sum_log(const struct brume_frame *f,
+                              const struct brume_light_ray *light, uint32_t px,
+                              uint32_t py, uint32_t pz, uint32_t n,
+                              struct kernel k)
+{
+    uint32_t lx = (uint32_t)light->first[0], sum = 0;
+    uint32_t ly = (uint32_t)light->first[1], lz = (uint32_t)light->first[2];
+    if (!BRUME_UNROLL_LIGHT || k.trilinear) {
+        for (uint32_t i = 0; i < n; i++)
+            sum += light_sample(f, px, py, pz, lx, ly, lz, i, k);
+        return sum;
+    }
+    /* Falls through from the farthest to the nearest, so that shifts are
+     * constants and nothing is counted. Compilers must not take the shifts
+     * out of the march: there are no registers to keep them. */
+    BRUME_OPAQUE(lx);
+    BRUME_OPAQUE(ly);
+    BRUME_OPAQUE(lz);
+#define LIGHT_SAMPLE(i) \
+    BRUME_FALLTHROUGH; \
+    case (i) + 1: sum += light_sample(f, px, py, pz, lx, ly, lz, i, k)
+    switch (n) {
+    default:
+        LIGHT_SAMPLE(15);
+        LIGHT_SAMPLE(14);
+        LIGHT_SAMPLE(13);
+        LIGHT_SAMPLE(12);
+        LIGHT_SAMPLE(11);
+        LIGHT_SAMPLE(10);
+        LIGHT_SAMPLE(9);
+        LIGHT_SAMPLE(8);
+        LIGHT_SAMPLE(7);
+        LIGHT_SAMPLE(6);
+        LIGHT_SAMPLE(5);
+        LIGHT_SAMPLE(4);
+        LIGHT_SAMPLE(3);
+        LIGHT_SAMPLE(2);
+        LIGHT_SAMPLE(1);
+        LIGHT_SAMPLE(0);
+        BRUME_FALLTHROUGH;
+    case 0: return sum;
+    }
+}
+
+/* Sum of d over the samples at p + first + i * light_line.move; < 2^28. */
+BRUME_INLINE uint32_t sum_uniform(const struct brume_frame *f,
+                                  const struct brume_light_ray *light,
+                                  uint32_t px, uint32_t py, uint32_t pz,
+                                  struct kernel k)
+{
+    const struct brume_line *line = &f->light_line;
+    uint32_t n = light->samples, sum = 0, m, d;
+    px += (uint32_t)light->first[0];
+    py += (uint32_t)light->first[1];
+    pz += (uint32_t)light->first[2];
     for (uint32_t i = 0; i < n; i += m) {
-        if (q[0] >= f->limit[0] || q[1] >= f->limit[1] || q[2] >= f->limit[2])
+        if (px >= f->limit[0] || py >= f->limit[1] || pz >= f->limit[2])
             break;
         m = 1;
-        if (density_at(f, q[0], q[1], q[2], &d, k))
+        BRUME_TALLY(light_samples, 1);
+        if (density_at(f, px, py, pz, &d, k))
             sum += d;
         else
-            m = leap(f, q, f->light_move, f->light_inverse, d & 255u);
-        q[0] += m * (uint32_t)f->light_move[0];
-        q[1] += m * (uint32_t)f->light_move[1];
-        q[2] += m * (uint32_t)f->light_move[2];
+            m = leap(f, line, px, py, pz, d, k);
+        px += m * (uint32_t)line->move[0];
+        py += m * (uint32_t)line->move[1];
+        pz += m * (uint32_t)line->move[2];
     }
     return sum;
 }
@@ -105,21 +181,37 @@ BRUME_INLINE uint32_t opacity(const struct brume_frame *f, uint32_t d,
     return ~mul_hi_floor(f->table[d >> 8], f->table[256u + (d & 255u)]);
 }
 
+/* Optical depth towards the sun, as a sum of codes times weights. *reach is
+ * the ray's, from one sample to the next. */
+BRUME_INLINE uint32_t light_sum(const struct brume_frame *f,
+                                const struct brume_light_ray *light, uint32_t x,
+                                uint32_t y, uint32_t z, uint32_t *reach,
+                                struct kernel k)
+{
+    if (k.uniform)
+        return sum_uniform(f, light, x, y, z, k);
+    *reach = light_reach(f, light, x, y, z, *reach);
+    return sum_log(f, light, x, y, z, *reach, k);
+}
+
 BRUME_INLINE void march(const struct brume_frame *f,
                         const struct brume_ray *ray, struct brume_radiance *out,
                         struct kernel k)
 {
-    uint32_t p[3] = {ray->position[0], ray->position[1], ray->position[2]};
+    const struct brume_line *line = &ray->line;
+    uint32_t x = ray->position[0], y = ray->position[1], z = ray->position[2];
     uint32_t transmittance = 1u << 31; /* Q1.31 */
     uint32_t light = 0;                /* Q3.29, <= 1 */
-    uint32_t left = ray->count, m, d;
+    uint32_t left = ray->count, reach = 0, m, d;
+    BRUME_TALLY(rays_in_pool, 1);
     for (;;) {
         m = 1;
-        if (!density_at(f, p[0], p[1], p[2], &d, k)) {
-            m = leap(f, p, ray->move, ray->inverse, d & 255u);
+        BRUME_TALLY(view_samples, 1);
+        if (!density_at(f, x, y, z, &d, k)) {
+            m = leap(f, line, x, y, z, d, k);
         } else if (d > f->min_density) {
-            uint32_t sum =
-                k.uniform ? sum_uniform(f, ray, p, k) : sum_log(f, ray, p, k);
+            BRUME_TALLY(lit_samples, 1);
+            uint32_t sum = light_sum(f, &ray->light, x, y, z, &reach, k);
             uint32_t lost = mul_hi_floor(transmittance, opacity(f, d, k));
             light += mul_hi_floor(lost, sun_transmittance(f, sum));
             transmittance -= lost;
@@ -129,22 +221,30 @@ BRUME_INLINE void march(const struct brume_frame *f,
         if (m >= left)
             break;
         left -= m;
-        p[0] += m * (uint32_t)ray->move[0];
-        p[1] += m * (uint32_t)ray->move[1];
-        p[2] += m * (uint32_t)ray->move[2];
+        x += m * (uint32_t)line->move[0];
+        y += m * (uint32_t)line->move[1];
+        z += m * (uint32_t)line->move[2];
     }
     /* Q31 * Q18 -> Q17 -> Q16 */
     out->light = (mul_hi_floor(light << 2, f->albedo << 2) + 1u) >> 1;
     out->transmittance = (transmittance + 0x4000u) >> 15;
 }
 
+/* Rays are told to miss in groups of eight: fewer cost as much to tell as to
+ * try. */
+#define RAY_GROUP 8
+
 BRUME_INLINE void span(const struct brume_frame *f, uint32_t x, uint32_t y,
                        uint32_t n, struct brume_radiance *out, struct kernel k)
 {
     static const struct brume_radiance k_clear = {0, 0x10000u};
+    bool miss = false;
     for (uint32_t i = 0; i < n; i++) {
         struct brume_ray ray;
-        if (brume_ray_begin(&ray, f, x + i, y))
+        if (i % RAY_GROUP == 0)
+            miss = brume_rays_miss(f, x + i, y,
+                                   n - i < RAY_GROUP ? n - i : RAY_GROUP);
+        if (!miss && brume_ray_begin(&ray, f, x + i, y))
             march(f, &ray, &out[i], k);
         else
             out[i] = k_clear;
@@ -270,13 +370,15 @@ static uint32_t codes_of(struct brume_number density,
 
 static void set_light(struct brume_frame *f, const struct brume_scene *s)
 {
-    f->light = s->light == BRUME_UNIFORM ? BRUME_UNIFORM : BRUME_LOG;
+    struct brume_line *line = &f->light_line;
+    f->light_kind = s->light == BRUME_UNIFORM ? BRUME_UNIFORM : BRUME_LOG;
     f->light_samples = s->light == BRUME_NO_LIGHT ? 0 : s->light_samples;
     f->light_step = s->light_step;
     for (int i = 0; i < 3; i++) {
-        f->light_move[i] = mul_signed_round(f->sun[i], s->light_step, 2);
-        f->light_inverse[i] = brume_inverse_of_move(f->light_move[i]);
+        line->move[i] = mul_signed_round(f->sun[i], s->light_step, 2);
+        line->inverse[i] = s->skip ? brume_inverse_of_move(line->move[i]) : 0;
     }
+    brume_light_begin(&f->light, f, 0);
 }
 
 int brume_march_begin(struct brume_frame *frame,
@@ -300,7 +402,7 @@ int brume_march_begin(struct brume_frame *frame,
             ? 0
             : codes_of(brume_number_q32(scene->min_density), v, narrow);
     f->leap_margin = tri && (!apron || clamp) ? 0x10000u : 0;
-    f->max_leap = scene->skip ? 0xffffffffu : 1;
+    f->skip = scene->skip;
     struct brume_number unit =
         brume_number_mul(v->density_max, per_code(narrow));
     struct brume_number step = brume_number_of(scene->step, -16);

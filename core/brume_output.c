@@ -52,20 +52,44 @@ static uint32_t code16(const struct brume_frame *f, uint32_t linear)
     return linear - (linear >> 16); /* 65536 -> 65535 */
 }
 
+/* Is pixel i what the one before it was? Most of a sky is. */
+static bool repeats(const struct brume_radiance *in, uint32_t i)
+{
+    return i > 0 && in[i].light == in[i - 1].light &&
+           in[i].transmittance == in[i - 1].transmittance;
+}
+
+/* The codes of pixel i; `code` holds those of the one before it. */
+static void codes_of(const struct brume_frame *f,
+                     const struct brume_radiance *in, uint32_t i,
+                     uint32_t code[3], int channels)
+{
+    if (repeats(in, i))
+        return;
+    for (int c = 0; c < channels; c++)
+        code[c] = code8(f, composed(f, &in[i], c));
+}
+
 static void pack_l8(const struct brume_frame *f,
                     const struct brume_radiance *in, uint32_t n, uint8_t *dst)
 {
-    for (uint32_t i = 0; i < n; i++)
-        dst[i] = (uint8_t)code8(f, composed(f, &in[i], 0));
+    uint32_t code[3];
+    for (uint32_t i = 0; i < n; i++) {
+        codes_of(f, in, i, code, 1);
+        dst[i] = (uint8_t)code[0];
+    }
 }
 
 static void pack_rgb888(const struct brume_frame *f,
                         const struct brume_radiance *in, uint32_t n,
                         uint8_t *dst)
 {
-    for (uint32_t i = 0; i < n; i++)
+    uint32_t code[3];
+    for (uint32_t i = 0; i < n; i++, dst += 3) {
+        codes_of(f, in, i, code, 3);
         for (int c = 0; c < 3; c++)
-            *dst++ = (uint8_t)code8(f, composed(f, &in[i], c));
+            dst[c] = (uint8_t)code[c];
+    }
 }
 
 /* An 8-bit code in `top` + 1 levels: round(code * top / 255). */
@@ -79,11 +103,11 @@ static void pack_rgb565(const struct brume_frame *f,
                         const struct brume_radiance *in, uint32_t n,
                         uint16_t *dst, bool swapped)
 {
+    uint32_t code[3];
     for (uint32_t i = 0; i < n; i++) {
-        uint32_t r = level(code8(f, composed(f, &in[i], 0)), 31);
-        uint32_t g = level(code8(f, composed(f, &in[i], 1)), 63);
-        uint32_t b = level(code8(f, composed(f, &in[i], 2)), 31);
-        uint32_t word = r << 11 | g << 5 | b;
+        codes_of(f, in, i, code, 3);
+        uint32_t word = level(code[0], 31) << 11 | level(code[1], 63) << 5 |
+                        level(code[2], 31);
         if (swapped)
             word = word >> 8 | (word & 0xffu) << 8;
         dst[i] = (uint16_t)word;
@@ -94,11 +118,10 @@ static void pack_xrgb8888(const struct brume_frame *f,
                           const struct brume_radiance *in, uint32_t n,
                           uint32_t *dst)
 {
+    uint32_t code[3];
     for (uint32_t i = 0; i < n; i++) {
-        uint32_t word = 0;
-        for (int c = 0; c < 3; c++)
-            word = word << 8 | code8(f, composed(f, &in[i], c));
-        dst[i] = word;
+        codes_of(f, in, i, code, 3);
+        dst[i] = code[0] << 16 | code[1] << 8 | code[2];
     }
 }
 

@@ -193,6 +193,25 @@ static void test_mul_signed_round(void)
     check_exact("mul_signed_round, mul_both_signed_round", &s, 0x888b22fe);
 }
 
+static void test_product_less(void)
+{
+    static const int32_t k_value[] = {
+        0,     1,      -1,      2,          -2,        65535,     -65537,
+        46341, -46341, 1 << 29, -(1 << 30), INT32_MAX, -INT32_MAX};
+    const int n = sizeof k_value / sizeof k_value[0];
+    int wrong = 0, wrong32 = 0;
+    for (int i = 0; i < n * n * n * n; i++) {
+        int32_t a = k_value[i % n], b = k_value[i / n % n];
+        int32_t c = k_value[i / n / n % n], d = k_value[i / n / n / n];
+        bool expected = (int64_t)a * b < (int64_t)c * d;
+        wrong += product_less(a, b, c, d) != expected;
+        wrong32 += mul32_product_less(a, b, c, d) != expected;
+    }
+    tap_check(wrong == 0 && wrong32 == 0,
+              "product_less: of %d, %d wrong, without a wide product %d",
+              n * n * n * n, wrong, wrong32);
+}
+
 static void test_le32(void)
 {
     struct sweep s = {0};
@@ -672,6 +691,7 @@ int main(void)
     test_mul_hi_floor();
     test_signs();
     test_mul_signed_round();
+    test_product_less();
     test_le32();
     test_rsqrt();
     test_reciprocal();

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "brume_inner.h"
 #include "render.h"
 #include "support/scenes.h"
 #include "tap.h"
@@ -85,10 +86,13 @@ static void check_skip(const char *name, const struct brume_volume *v,
         scene->skip = skip;
         if (brume_begin_frame(&f, v, scene) != BRUME_OK)
             abort();
+        if (!skip)
+            f.outlines = 0;
         render_frame(&f, BRUME_L16, skip ? on : off, (size_t)scene->width * 2,
                      2, false);
     }
-    tap_check(memcmp(on, off, size) == 0, "%s: skip on == skip off", name);
+    tap_check(memcmp(on, off, size) == 0, "%s: skip and outline on == both off",
+              name);
     free(on);
     free(off);
 }
@@ -137,8 +141,11 @@ static void check_random_skips(const struct test_volumes *volumes)
         s.output = BRUME_LINEAR;
         for (int skip = 0; skip < 2; skip++) {
             s.skip = skip;
-            if (brume_begin_frame(&f, v, &s) != BRUME_OK ||
-                brume_render_rect(&f, 0, 0, 24, 18, BRUME_L16, pixel[skip],
+            if (brume_begin_frame(&f, v, &s) != BRUME_OK)
+                abort();
+            if (!skip)
+                f.outlines = 0;
+            if (brume_render_rect(&f, 0, 0, 24, 18, BRUME_L16, pixel[skip],
                                   48) != BRUME_OK)
                 abort();
         }
@@ -150,6 +157,65 @@ static void check_random_skips(const struct test_volumes *volumes)
               "3000 random scenes: skip on == skip off (%d differ, %d pixels "
               "show something)",
               different, lit);
+}
+
+static uint32_t next(uint32_t *seed)
+{
+    *seed = *seed * 1664525u + 1013904223u;
+    return *seed >> 8;
+}
+
+/* A camera anywhere, from inside the pool to as far as one can be, with any
+ * field of view and frame size. */
+static void random_camera(struct brume_scene *s, uint32_t *seed)
+{
+    static const uint16_t k_size[] = {1, 7, 40, 333, 16384};
+    uint32_t far = next(seed) % 17;
+    for (int i = 0; i < 3; i++) {
+        int32_t away = (int32_t)(next(seed) & 0xffffu) - 0x8000;
+        s->eye[i] = s->target[i] + away * (1 << far) / 2;
+        if (s->eye[i] > BRUME_MAX_COORDINATE || s->eye[i] < 0)
+            s->eye[i] = next(seed) % 8 == 0 ? 0 : s->target[i] - away;
+        s->target[i] += (int32_t)(next(seed) % 0x200000u) - 0x100000;
+    }
+    s->fov = BRUME_MIN_FOV + next(seed) % (BRUME_MAX_FOV - BRUME_MIN_FOV);
+    s->width = k_size[next(seed) % 5];
+    s->height = k_size[next(seed) % 5];
+    s->step = BRUME_MIN_STEP + next(seed) % 0x40000u;
+}
+
+/* Rays that are told to pass the pool by never have a sample in it; and most
+ * of those that have none are told. */
+static void check_misses(const struct test_volumes *volumes)
+{
+    uint32_t seed = 7;
+    int told = 0, wrong = 0, missed = 0;
+    for (int n = 0; n < 20000; n++) {
+        const struct test_scene *t = &test_scenes[n % 22];
+        struct brume_scene s;
+        struct brume_frame f;
+        test_scene_fill(&s, t, test_volume_of(volumes, t));
+        random_camera(&s, &seed);
+        if (brume_begin_frame(&f, test_volume_of(volumes, t), &s) != BRUME_OK)
+            continue; /* the eye on the target */
+        for (int k = 0; k < 40; k++) {
+            struct brume_ray ray;
+            uint32_t count = 1 + next(&seed) % 8;
+            if (count > s.width)
+                count = s.width;
+            uint32_t x = next(&seed) % (s.width - count + 1u);
+            uint32_t y = next(&seed) % s.height, hits = 0;
+            bool miss = brume_rays_miss(&f, x, y, count);
+            for (uint32_t i = 0; i < count; i++)
+                hits += brume_ray_begin(&ray, &f, x + i, y);
+            wrong += miss && hits > 0;
+            told += miss;
+            missed += hits == 0;
+        }
+    }
+    tap_check(wrong == 0 && told > 100000 && told * 10 > missed * 9,
+              "rays told to miss have no sample (%d told of %d, %d wrong)",
+              told, missed, wrong);
 }
 
 /// Formats ///
@@ -294,6 +360,7 @@ int main(int argc, char **argv)
     check_rectangles(&volumes);
     check_scene_limits(&volumes);
     check_random_skips(&volumes);
+    check_misses(&volumes);
     check_scenes(&volumes);
     test_volumes_free(&volumes);
     return tap_done();

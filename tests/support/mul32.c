@@ -18,3 +18,8 @@ int32_t mul32_signed_round(int32_t a, uint32_t b, unsigned up)
 {
     return mul_signed_round(a, b, up);
 }
+
+bool mul32_product_less(int32_t a, int32_t b, int32_t c, int32_t d)
+{
+    return product_less(a, b, c, d);
+}
