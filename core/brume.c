@@ -175,8 +175,9 @@ static int check_scene(const struct brume_scene *s)
         s->light_samples > BRUME_MAX_UNIFORM_SAMPLES)
         return BRUME_ERR_SAMPLES;
     if (s->filter > BRUME_TRILINEAR || s->jitter > BRUME_JITTER_BOTH ||
-        s->noise > BRUME_NOISE_BAYER8 || s->output > BRUME_SRGB ||
-        s->albedo > 0x10000u || s->min_transmittance > 0x10000u)
+        !brume_noise_usable(s->noise, s->noise_table) ||
+        s->output > BRUME_SRGB || s->albedo > 0x10000u ||
+        s->min_transmittance > 0x10000u)
         return BRUME_ERR_SCENE;
     for (int c = 0; c < 3; c++)
         if (s->background[c] > 0x10000u)
@@ -195,6 +196,8 @@ static void copy_scene(struct brume_frame *f, const struct brume_scene *s)
     f->min_transmittance = s->min_transmittance << 15;
     f->jitter = s->jitter;
     f->noise = s->noise;
+    if (s->noise >= BRUME_NOISE_TABLE)
+        f->noise_table = *s->noise_table;
     f->output = s->output;
     for (int i = 0; i < 3; i++) {
         f->background[i] = s->background[i];

@@ -22,8 +22,8 @@
  *
  * Memory   The caller owns all of it. The library has no heap, no writable
  *          statics, no recursion, and needs less than 1 KiB of stack.
- *          Structs may be copied; they point only at the asset (brume_volume)
- *          and at the volume (brume_frame).
+ *          Structs may be copied; they point only at the asset (brume_volume),
+ *          at the volume and at a noise table's values (brume_frame).
  * Threads  Functions that take pointers to const may run at the same time:
  *          one brume_frame serves any number of brume_render_rect.
  * Errors   Functions returning int give BRUME_OK (0) or a negative
@@ -236,12 +236,31 @@ enum brume_jitter { /* bits: what is jittered */
                     BRUME_JITTER_LIGHT = 2,
                     BRUME_JITTER_BOTH = 3
 };
-enum brume_noise {
-    BRUME_NOISE_NONE = 0,
-    BRUME_NOISE_WHITE = 1, /* integer hash of pixel and frame */
-    BRUME_NOISE_IGN = 2,   /* interleaved gradient noise */
-    BRUME_NOISE_BAYER8 = 3 /* ordered 8x8, the same in every frame */
+enum brume_noise { /* docs/noise.md says which to use when */
+                   BRUME_NOISE_NONE = 0,
+                   BRUME_NOISE_WHITE = 1,  /* integer hash of pixel and frame */
+                   BRUME_NOISE_IGN = 2,    /* interleaved gradient noise */
+                   BRUME_NOISE_BAYER8 = 3, /* ordered 8x8, in every frame */
+                   BRUME_NOISE_BAYER4 = 4,
+                   BRUME_NOISE_BAYER16 = 5,
+                   BRUME_NOISE_IGN_THESIS = 6, /* with other frame offsets */
+                   /* noise_table, at pixel and frame modulo its size; */
+                   BRUME_NOISE_TABLE = 7,
+                   /* its first slice, plus the golden ratio per frame; */
+                   BRUME_NOISE_TABLE_GOLDEN = 8,
+                   /* its first slice, moved by the R2 sequence per frame */
+                   BRUME_NOISE_TABLE_R2 = 9
 };
+
+/* Precomputed noise: 2^width_log2 x 2^height_log2 x 2^frames_log2 values, x
+ * fastest. tables/ has some, and brume-noise makes any. Sides 8 to 256, 1 to
+ * 64 frames. */
+struct brume_noise_table {
+    const uint8_t *values; /* 4 bits: two to a byte, the first one low */
+    uint8_t width_log2, height_log2, frames_log2;
+    uint8_t bits; /* 4 or 8 per value */
+};
+
 enum brume_output { BRUME_LINEAR = 0, BRUME_SRGB = 1 };
 
 /* A Q32.32 constant from a non-negative number below 2^32. The compiler
@@ -276,6 +295,8 @@ struct brume_scene {
     uint8_t noise;          /* enum brume_noise */
     uint8_t output;         /* enum brume_output */
     bool skip;              /* leap over empty cells; same image */
+
+    const struct brume_noise_table *noise_table; /* or NULL; see noise */
 };
 
 /* A scene that shows any volume: 640x480, camera on the box of its non-zero
@@ -318,6 +339,7 @@ struct brume_frame {
     int32_t eye[3];             /* Q16.16, plus the lookup's bias */
     int32_t ahead[3];           /* ray of the middle, Q1.31, < 1 long */
     int32_t per_x[3], per_y[3]; /* its change per half pixel, Q1.31 */
+    struct brume_noise_table noise_table; /* when noise is one */
     struct brume_outline outline[6];
     uint32_t outlines;
     uint32_t limit[3];            /* positions inside are below, Q16.16 */

@@ -331,7 +331,8 @@ static uint32_t jitter_of(const struct brume_frame *f, uint32_t x, uint32_t y,
                           uint32_t channel)
 {
     return f->jitter >> channel & 1u
-               ? brume_noise_value(f->noise, x, y, f->frame, channel)
+               ? brume_noise_value(f->noise, &f->noise_table, x, y, f->frame,
+                                   channel)
                : 0;
 }
 

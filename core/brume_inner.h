@@ -58,9 +58,14 @@ extern const uint16_t brume_srgb_threshold[255];
 
 /// brume_noise.c ///
 
-/* J of docs/SPEC.md, Q0.16, for a pixel, frame and channel. */
-uint32_t brume_noise_value(int noise, uint32_t x, uint32_t y, uint32_t frame,
+/* J of docs/SPEC.md, Q0.16, for a pixel, frame and channel. The table is read
+ * by BRUME_NOISE_TABLE and those after it alone. */
+uint32_t brume_noise_value(int noise, const struct brume_noise_table *values,
+                           uint32_t x, uint32_t y, uint32_t frame,
                            uint32_t channel);
+
+/* Is there such a noise, and has it the table that it needs? */
+bool brume_noise_usable(int noise, const struct brume_noise_table *table);
 
 /// brume_camera.c ///
 

@@ -19,36 +19,103 @@ static uint32_t white(uint32_t x, uint32_t y, uint32_t frame, uint32_t channel)
 }
 
 /* Jimenez, "Next Generation Post Processing in Call of Duty: Advanced
- * Warfare", 2014: fract(52.9829189 * fract(0.06711056 x + 0.00583715 y)), both
- * coordinates moved by 5.588238 per frame for 64 frames. Fractions in Q0.32
- * wrap by themselves. */
-static uint32_t ign(uint32_t x, uint32_t y, uint32_t frame, uint32_t channel)
+ * Warfare", 2014: fract(52.9829189 * fract(0.06711056 x + 0.00583715 y)).
+ * Fractions in Q0.32 wrap by themselves. `moved` is what the frame adds to
+ * the inner one. */
+static uint32_t ign(uint32_t x, uint32_t y, uint32_t moved, uint32_t channel)
 {
     x += 96u * channel;
     y += 72u * channel;
-    uint32_t u = x * 288237660u + y * 25070368u + (frame & 63u) * 1750839832u;
+    uint32_t u = x * 288237660u + y * 25070368u + moved;
     return (52u * u + mul_hi_floor(u, 4221604530u)) >> 16;
 }
 
-/* Bayer's ordered dither matrix 8x8, from interleaved bits of x ^ y and y,
- * lowest first. */
-static uint32_t bayer8(uint32_t x, uint32_t y, uint32_t channel)
+/* Where channel c looks in a tile of side 2^log2: moved by point c of Roberts'
+ * R2 sequence, (0.7549, 0.5698), so that channels are nearly independent. */
+static uint32_t channel_x(uint32_t channel, uint32_t log2)
 {
-    x += 6u * channel;
-    y += 4u * channel;
-    uint32_t d = x ^ y;
-    uint32_t v = (d & 1u) << 5 | (y & 1u) << 4 | (d & 2u) << 2 | (y & 2u) << 1 |
-                 (d & 4u) >> 1 | (y & 4u) >> 2;
-    return 1024u * v + 512u;
+    return (channel * 49472u & 0xffffu) >> (16u - log2);
 }
 
-uint32_t brume_noise_value(int noise, uint32_t x, uint32_t y, uint32_t frame,
+static uint32_t channel_y(uint32_t channel, uint32_t log2)
+{
+    return (channel * 37345u & 0xffffu) >> (16u - log2);
+}
+
+/* Bayer's ordered dither matrix of side 2^log2, from interleaved bits of x ^ y
+ * and y, lowest first. */
+static uint32_t bayer(uint32_t x, uint32_t y, uint32_t channel, uint32_t log2)
+{
+    x += channel_x(channel, log2);
+    y += channel_y(channel, log2);
+    uint32_t d = x ^ y, v = 0;
+    for (uint32_t i = 0; i < log2; i++) {
+        v = v << 2 | (d & 1u) << 1 | (y & 1u);
+        d >>= 1;
+        y >>= 1;
+    }
+    return (2u * v + 1u) << (15u - 2u * log2);
+}
+
+/* A value of the table, whose sides wrap, in the middle of its bin. */
+static uint32_t table_value(const struct brume_noise_table *t, uint32_t x,
+                            uint32_t y, uint32_t frame)
+{
+    x &= (1u << t->width_log2) - 1u;
+    y &= (1u << t->height_log2) - 1u;
+    frame &= (1u << t->frames_log2) - 1u;
+    uint32_t i = ((frame << t->height_log2 | y) << t->width_log2) | x;
+    if (t->bits == 8)
+        return t->values[i] * 256u + 128u;
+    return (t->values[i >> 1] >> ((i & 1u) << 2) & 15u) * 4096u + 2048u;
+}
+
+static uint32_t table(int noise, const struct brume_noise_table *t, uint32_t x,
+                      uint32_t y, uint32_t frame, uint32_t channel)
+{
+    x += channel_x(channel, t->width_log2);
+    y += channel_y(channel, t->height_log2);
+    if (noise == BRUME_NOISE_TABLE)
+        return table_value(t, x, y, frame);
+    if (noise == BRUME_NOISE_TABLE_R2) {
+        /* Point `frame` of the same sequence, in Q0.32. */
+        x += (frame * 3242174889u) >> (32u - t->width_log2);
+        y += (frame * 2447445414u) >> (32u - t->height_log2);
+        return table_value(t, x, y, 0);
+    }
+    /* The golden ratio's fraction, Q0.32, in steps of 1/256. */
+    uint32_t further = (frame * 2654435769u) >> 24 << 8;
+    return (table_value(t, x, y, 0) + further) & 0xffffu;
+}
+
+uint32_t brume_noise_value(int noise, const struct brume_noise_table *values,
+                           uint32_t x, uint32_t y, uint32_t frame,
                            uint32_t channel)
 {
     switch (noise) {
     case BRUME_NOISE_WHITE: return white(x, y, frame, channel);
-    case BRUME_NOISE_IGN: return ign(x, y, frame, channel);
-    case BRUME_NOISE_BAYER8: return bayer8(x, y, channel);
+    /* 5.588238 per frame on both axes, for 64 frames */
+    case BRUME_NOISE_IGN:
+        return ign(x, y, (frame & 63u) * 1750839832u, channel);
+    /* (2.083, 4.867) per frame */
+    case BRUME_NOISE_IGN_THESIS: return ign(x, y, frame * 722416529u, channel);
+    case BRUME_NOISE_BAYER4: return bayer(x, y, channel, 2);
+    case BRUME_NOISE_BAYER8: return bayer(x, y, channel, 3);
+    case BRUME_NOISE_BAYER16: return bayer(x, y, channel, 4);
+    case BRUME_NOISE_TABLE:
+    case BRUME_NOISE_TABLE_GOLDEN:
+    case BRUME_NOISE_TABLE_R2:
+        return table(noise, values, x, y, frame, channel);
     default: return 0;
     }
+}
+
+bool brume_noise_usable(int noise, const struct brume_noise_table *t)
+{
+    if (noise < BRUME_NOISE_TABLE)
+        return true;
+    return noise <= BRUME_NOISE_TABLE_R2 && t != NULL && t->values != NULL &&
+           t->width_log2 >= 3 && t->width_log2 <= 8 && t->height_log2 >= 3 &&
+           t->height_log2 <= 8 && t->frames_log2 <= 6 &&
+           (t->bits == 4 || t->bits == 8);
 }

@@ -35,7 +35,29 @@ const kind kinds[] = {
     {"white", BRUME_NOISE_WHITE, reference::noise::white},
     {"ign", BRUME_NOISE_IGN, reference::noise::ign},
     {"bayer8", BRUME_NOISE_BAYER8, reference::noise::bayer8},
+    {"bayer4", BRUME_NOISE_BAYER4, reference::noise::bayer4},
+    {"bayer16", BRUME_NOISE_BAYER16, reference::noise::bayer16},
+    {"ign-thesis", BRUME_NOISE_IGN_THESIS, reference::noise::ign_thesis},
+    {"table", BRUME_NOISE_TABLE, reference::noise::table},
+    {"table, golden", BRUME_NOISE_TABLE_GOLDEN, reference::noise::table_golden},
+    {"table, r2", BRUME_NOISE_TABLE_R2, reference::noise::table_r2},
 };
+
+// A table without any symmetry, in both notations.
+const reference::noise_table reference_table = [] {
+    reference::noise_table t;
+    t.width = 32;
+    t.height = 16;
+    t.frames = 4;
+    uint32_t h = 1;
+    for (uint32_t i = 0; i < 32 * 16 * 4; i++) {
+        h = h * 1664525U + 1013904223U;
+        t.values.push_back(static_cast<uint8_t>(h >> 24));
+    }
+    return t;
+}();
+const brume_noise_table core_table = {reference_table.values.data(), 5, 4, 2,
+                                      8};
 
 const uint32_t side = 256; // of the area that statistics are taken of
 const double values = 65536;
@@ -53,12 +75,16 @@ uint32_t random_word()
 
 bool agrees(const kind &k, uint32_t x, uint32_t y, uint32_t frame)
 {
-    const uint32_t primary = brume_noise_value(k.core, x, y, frame, 0);
-    const uint32_t light = brume_noise_value(k.core, x, y, frame, 1);
+    const uint32_t primary =
+        brume_noise_value(k.core, &core_table, x, y, frame, 0);
+    const uint32_t light =
+        brume_noise_value(k.core, &core_table, x, y, frame, 1);
     return primary == reference::noise_value(k.reference, x, y, frame,
-                                             reference::primary_channel) &&
+                                             reference::primary_channel,
+                                             reference_table) &&
            light == reference::noise_value(k.reference, x, y, frame,
-                                           reference::light_channel) &&
+                                           reference::light_channel,
+                                           reference_table) &&
            primary < 65536 && light < 65536;
 }
 
@@ -92,10 +118,47 @@ void test_reference_at_random(const kind &k)
               wrong);
 }
 
+// Four bits to a value: the upper halves of a table's bytes.
+void test_four_bits()
+{
+    std::vector<uint8_t> packed;
+    for (size_t i = 0; i < reference_table.values.size(); i += 2)
+        packed.push_back(
+            static_cast<uint8_t>(reference_table.values[i] >> 4 |
+                                 (reference_table.values[i + 1] & 0xf0)));
+    const brume_noise_table table = {packed.data(), 5, 4, 2, 4};
+    int wrong = 0;
+    for (uint32_t i = 0; i < 4 * 32 * 16; i++) {
+        const uint32_t x = i % 32, y = i / 32 % 16, frame = i / 512;
+        const uint32_t wide = brume_noise_value(BRUME_NOISE_TABLE, &core_table,
+                                                x, y, frame, i & 1);
+        wrong += brume_noise_value(BRUME_NOISE_TABLE, &table, x, y, frame,
+                                   i & 1) != (wide & 0xf000) + 2048;
+    }
+    tap_check(wrong == 0, "table of 4 bits (%d wrong)", wrong);
+}
+
+// What a frame with such a table would read beyond, or divide wrongly.
+void test_tables_refused()
+{
+    const uint8_t *v = reference_table.values.data();
+    const brume_noise_table bad[] = {{nullptr, 5, 4, 2, 8}, {v, 2, 4, 2, 8},
+                                     {v, 9, 4, 2, 8},       {v, 5, 2, 2, 8},
+                                     {v, 5, 9, 2, 8},       {v, 5, 4, 7, 8},
+                                     {v, 5, 4, 2, 0},       {v, 5, 4, 2, 16}};
+    bool refused = !brume_noise_usable(BRUME_NOISE_TABLE, nullptr) &&
+                   !brume_noise_usable(BRUME_NOISE_TABLE_R2 + 1, &core_table);
+    for (const brume_noise_table &t : bad)
+        refused = refused && !brume_noise_usable(BRUME_NOISE_TABLE_R2, &t);
+    tap_check(refused && brume_noise_usable(BRUME_NOISE_TABLE, &core_table) &&
+                  brume_noise_usable(BRUME_NOISE_WHITE, nullptr),
+              "tables of impossible sizes are refused");
+}
+
 void test_none()
 {
-    tap_check(brume_noise_value(BRUME_NOISE_NONE, 3, 5, 7, 0) == 0 &&
-                  brume_noise_value(BRUME_NOISE_NONE, 3, 5, 7, 1) == 0,
+    tap_check(brume_noise_value(BRUME_NOISE_NONE, nullptr, 3, 5, 7, 0) == 0 &&
+                  brume_noise_value(BRUME_NOISE_NONE, nullptr, 3, 5, 7, 1) == 0,
               "none: zero");
 }
 
@@ -107,8 +170,8 @@ std::vector<double> area(int noise, uint32_t frame, uint32_t channel,
     std::vector<double> out;
     for (uint32_t y = 0; y < side; y++)
         for (uint32_t x = 0; x < side; x++)
-            out.push_back(
-                brume_noise_value(noise, left + x, top + y, frame, channel));
+            out.push_back(brume_noise_value(noise, nullptr, left + x, top + y,
+                                            frame, channel));
     return out;
 }
 
@@ -198,8 +261,9 @@ void test_bayer_levels()
     for (uint32_t at = 0; at < 128; at++) {
         std::vector<int> seen(64);
         for (uint32_t i = 0; i < 64; i++) {
-            const uint32_t v = brume_noise_value(
-                BRUME_NOISE_BAYER8, 5 * at + i % 8, 3 * at + i / 8, at, at & 1);
+            const uint32_t v =
+                brume_noise_value(BRUME_NOISE_BAYER8, nullptr, 5 * at + i % 8,
+                                  3 * at + i / 8, at, at & 1);
             wrong += v % 1024 != 512;
             seen[v / 1024]++;
         }
@@ -216,8 +280,8 @@ void test_bayer_matrix()
     int wrong = 0;
     for (uint32_t y = 0; y < 2; y++)
         for (uint32_t x = 0; x < 8; x++)
-            wrong += brume_noise_value(BRUME_NOISE_BAYER8, x, y, 0, 0) !=
-                     1024 * rows[y][x] + 512;
+            wrong += brume_noise_value(BRUME_NOISE_BAYER8, nullptr, x, y, 0,
+                                       0) != 1024 * rows[y][x] + 512;
     tap_check(wrong == 0, "bayer8: the rows of Bayer's matrix");
 }
 
@@ -228,9 +292,10 @@ void test_bayer_quarters()
     for (uint32_t i = 0; i < 64; i++) {
         uint32_t seen = 0;
         for (uint32_t k = 0; k < 4; k++)
-            seen |= 1U << (brume_noise_value(BRUME_NOISE_BAYER8, i % 8 + k % 2,
-                                             i / 8 + k / 2, 0, 0) >>
-                           14);
+            seen |=
+                1U << (brume_noise_value(BRUME_NOISE_BAYER8, nullptr,
+                                         i % 8 + k % 2, i / 8 + k / 2, 0, 0) >>
+                       14);
         wrong += seen != 15;
     }
     tap_check(wrong == 0, "bayer8: 2x2 pixels have a value in each quarter");
@@ -255,7 +320,8 @@ void test_ign_formula()
             const double exact = fraction(
                 52.9829189 * fraction(0.06711056 * u + 0.00583715 * v));
             const double j =
-                brume_noise_value(BRUME_NOISE_IGN, x, y, frame, 0) / values;
+                brume_noise_value(BRUME_NOISE_IGN, nullptr, x, y, frame, 0) /
+                values;
             const double off = fraction(exact - j + 0.5) - 0.5;
             worst = std::max(worst, std::fabs(off));
         }
@@ -268,9 +334,10 @@ void test_ign_period()
     int same = 0, differ = 0;
     for (uint32_t i = 0; i < 4096; i++) {
         const uint32_t x = i % 64, y = i / 64;
-        const uint32_t j = brume_noise_value(BRUME_NOISE_IGN, x, y, 0, 0);
-        same += j == brume_noise_value(BRUME_NOISE_IGN, x, y, 64, 0);
-        differ += j != brume_noise_value(BRUME_NOISE_IGN, x, y, 63, 0);
+        const uint32_t j =
+            brume_noise_value(BRUME_NOISE_IGN, nullptr, x, y, 0, 0);
+        same += j == brume_noise_value(BRUME_NOISE_IGN, nullptr, x, y, 64, 0);
+        differ += j != brume_noise_value(BRUME_NOISE_IGN, nullptr, x, y, 63, 0);
     }
     tap_check(same == 4096 && differ > 4000, "ign: 64 frames, then again");
 }
@@ -297,8 +364,8 @@ void test_ign_neighbours()
         for (uint32_t x = 0; x < side; x++) {
             double sum = 0;
             for (uint32_t k = 0; k < 9; k++)
-                sum += brume_noise_value(BRUME_NOISE_IGN, x + k % 3, y + k / 3,
-                                         0, 0);
+                sum += brume_noise_value(BRUME_NOISE_IGN, nullptr, x + k % 3,
+                                         y + k / 3, 0, 0);
             worst = std::max(worst, std::fabs(sum / 9 / values - 0.5));
         }
     tap_check(worst < 0.096, "ign: the mean of any 3x3 is within %.3f < 0.096",
@@ -313,6 +380,8 @@ int main()
         test_reference_at_edges(k);
         test_reference_at_random(k);
     }
+    test_four_bits();
+    test_tables_refused();
     test_none();
     test_white_mean();
     test_white_uniformity();

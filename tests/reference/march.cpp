@@ -8,7 +8,8 @@
 #include <limits>
 #include <thread>
 
-namespace reference {
+namespace reference
+{
 
 static const double radians = 3.14159265358979323846 / 180;
 
@@ -16,8 +17,7 @@ static vec3 sun_direction(const scene &s)
 {
     const double a = s.sun_azimuth * radians;
     const double e = s.sun_elevation * radians;
-    return {std::cos(e) * std::sin(a), std::sin(e),
-            std::cos(e) * std::cos(a)};
+    return {std::cos(e) * std::sin(a), std::sin(e), std::cos(e) * std::cos(a)};
 }
 
 // The frame is built in world space, where it is right-handed, and then
@@ -99,12 +99,9 @@ double renderer::uniform_depth(const vec3 &p) const
 double renderer::sun_transmittance(const vec3 &p, double jitter) const
 {
     switch (scene_.light) {
-    case light_model::log:
-        return std::exp(-log_depth(p, jitter));
-    case light_model::uniform:
-        return std::exp(-uniform_depth(p));
-    case light_model::none:
-        break;
+    case light_model::log: return std::exp(-log_depth(p, jitter));
+    case light_model::uniform: return std::exp(-uniform_depth(p));
+    case light_model::none: break;
     }
     return 1;
 }
@@ -140,7 +137,8 @@ double renderer::jitter_of(int x, int y, channel c) const
     if (!on)
         return 0;
     return noise_value(scene_.noise_kind, static_cast<uint32_t>(x),
-                       static_cast<uint32_t>(y), scene_.frame, c) /
+                       static_cast<uint32_t>(y), scene_.frame, c,
+                       scene_.noise_values) /
            65536.0;
 }
 
@@ -166,8 +164,10 @@ void renderer::render_row(int y, const rectangle &area, picture &out) const
 
 picture renderer::render(const rectangle &area, int threads) const
 {
-    picture out{area.x_max - area.x_min, area.y_max - area.y_min,
-                scene_.background_is_rgb ? 3 : 1, {}};
+    picture out{area.x_max - area.x_min,
+                area.y_max - area.y_min,
+                scene_.background_is_rgb ? 3 : 1,
+                {}};
     out.values.resize(static_cast<size_t>(out.width) *
                       static_cast<size_t>(out.height) *
                       static_cast<size_t>(out.channels));

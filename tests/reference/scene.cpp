@@ -11,7 +11,8 @@
 #include <stdexcept>
 #include <vector>
 
-namespace reference {
+namespace reference
+{
 
 static const double infinity = std::numeric_limits<double>::infinity();
 
@@ -118,6 +119,18 @@ static void set_background(scene &s, const std::string &text)
 
 /// Keys ///
 
+static void set_noise(scene &s, const std::string &v)
+{
+    if (v.size() > 4 && v.substr(v.size() - 4) == ".raw") {
+        s.noise_kind = noise::table;
+        s.noise_values = read_noise_table(v);
+        return;
+    }
+    s.noise_kind =
+        static_cast<noise>(parse_word(v, {"none", "white", "ign", "bayer8",
+                                          "bayer4", "bayer16", "ign-thesis"}));
+}
+
 // Which scenes must set a key: if_lit is every light but `none`.
 enum class need { always, if_lit, never };
 
@@ -160,8 +173,8 @@ static const scene_key keys[] = {
      [](scene &s, text v) { s.max_density = parse_positive(v); }},
     {"filter", "nearest", need::never, "nearest | trilinear",
      [](scene &s, text v) {
-         s.filter = static_cast<lookup>(
-             parse_word(v, {"nearest", "trilinear"}));
+         s.filter =
+             static_cast<lookup>(parse_word(v, {"nearest", "trilinear"}));
      }},
     {"light", nullptr, need::always, "none | log | uniform",
      [](scene &s, text v) {
@@ -176,15 +189,12 @@ static const scene_key keys[] = {
      [](scene &s, text v) { s.light_step = parse_positive(v); }},
     {"jitter", "none", need::never, "none | primary | light | both",
      set_jitter},
-    {"noise", "none", need::never, "none | white | ign | bayer8",
-     [](scene &s, text v) {
-         s.noise_kind = static_cast<noise>(
-             parse_word(v, {"none", "white", "ign", "bayer8"}));
-     }},
+    {"noise", "none", need::never,
+     "none | white | ign | bayer8 | bayer4 | bayer16 | ign-thesis | FILE.raw",
+     set_noise},
     {"frame", "0", need::never, "0..4294967295",
      [](scene &s, text v) { s.frame = parse_integer(v, 0, 4294967295.0); }},
-    {"background", "0", need::never, "grey, or r,g,b; linear",
-     set_background},
+    {"background", "0", need::never, "grey, or r,g,b; linear", set_background},
     {"output", nullptr, need::never, "ignored: the output is linear",
      [](scene &, text) {}},
     {"skip", nullptr, need::never, "ignored: nothing is skipped",

@@ -16,38 +16,41 @@
 #include "vec3.hpp"
 #include "volume.hpp"
 
-namespace reference {
+namespace reference
+{
 
 enum class light_model { none, log, uniform };
 
 struct scene {
     int width, height;
-    vec3 eye, target, up;      // world space
-    double fov;                // vertical, degrees
+    vec3 eye, target, up;              // world space
+    double fov;                        // vertical, degrees
     double sun_azimuth, sun_elevation; // degrees, towards the sun
-    double density_scale;      // extinction per voxel at density 1
+    double density_scale;              // extinction per voxel at density 1
     double light_density_scale;
     double albedo;
-    double step;               // voxels
+    double step; // voxels
     double min_density;
     double min_transmittance;
     double max_density;
     lookup filter;
     light_model light;
     int light_samples;
-    double light_step;         // voxels
+    double light_step; // voxels
     bool jitter_primary, jitter_light;
     noise noise_kind;
+    noise_table noise_values; // when it is a table
     uint32_t frame;
-    vec3 background;           // linear
-    bool background_is_rgb;    // written r,g,b: the picture has three channels
+    vec3 background;        // linear
+    bool background_is_rgb; // written r,g,b: the picture has three channels
 };
 
 // Collects settings, the later of two winning, and hands out the scene once
 // it is complete. Every member throws std::runtime_error: an unknown key, a
 // value that does not parse or is out of range, a required key left out.
-class scene_builder {
-public:
+class scene_builder
+{
+  public:
     scene_builder();
     void set(const std::string &key, const std::string &value);
     // `key=value`, the argument of --set.
@@ -56,7 +59,7 @@ public:
     void read_file(const std::string &path);
     scene finish() const;
 
-private:
+  private:
     scene scene_{};
     std::set<std::string> given_;
 };
