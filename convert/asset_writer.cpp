@@ -72,7 +72,7 @@ void put_number(uint8_t *p, double v)
 class sink
 {
   public:
-    explicit sink(atomic_file &out) : out_(out)
+    explicit sink(output &out) : out_(out)
     {
     }
 
@@ -126,7 +126,7 @@ class sink
         }
     }
 
-    atomic_file &out_;
+    output &out_;
     uLong crc_ = crc32(0, nullptr, 0);
     uint64_t at_ = 0;
 };
@@ -212,13 +212,22 @@ std::string short_name(const std::string &name)
 
 } // namespace
 
-asset_size write_asset(atomic_file &out, const volume &vol, const measures &m,
+asset_size size_of_asset(const brick_pool &p, const std::string &name)
+{
+    asset_size size = {4 * p.cells.size(), p.bytes.size(), 4 * p.ranges.size(),
+                       short_name(name).size(), 0};
+    const section last = place(size).back();
+
+    size.total = last.offset + last.bytes;
+    return size;
+}
+
+asset_size write_asset(output &out, const volume &vol, const measures &m,
                        const layout &l, const brick_pool &p,
                        const std::string &name)
 {
     const std::string label = short_name(name);
-    asset_size size = {4 * p.cells.size(), p.bytes.size(), 4 * p.ranges.size(),
-                       label.size(), 0};
+    const asset_size size = size_of_asset(p, name);
     const std::vector<section> list = place(size);
     std::vector<uint8_t> header = make_header(vol, m, l, p, list);
     sink s(out);
@@ -242,11 +251,10 @@ asset_size write_asset(atomic_file &out, const volume &vol, const measures &m,
     }
     put32(&header[BRUME_OFF_CRC], s.crc());
     out.write_at(0, header.data(), ident_bytes);
-    size.total = list.back().offset + list.back().bytes;
     return size;
 }
 
-void write_float_dump(atomic_file &out, const volume &vol, const layout &l)
+void write_float_dump(output &out, const volume &vol, const layout &l)
 {
     const block_map map(vol);
     const size_t nx = size_t(l.cells.x) * block_side;

@@ -15,11 +15,14 @@ struct asset_size {
     uint64_t cell, pool, range, name, total;
 };
 
-asset_size write_asset(atomic_file &out, const volume &vol, const measures &m,
+// What a pool and its name will take.
+asset_size size_of_asset(const brick_pool &p, const std::string &name);
+
+asset_size write_asset(output &out, const volume &vol, const measures &m,
                        const layout &l, const brick_pool &p,
                        const std::string &name);
 
-void write_float_dump(atomic_file &out, const volume &vol, const layout &l);
+void write_float_dump(output &out, const volume &vol, const layout &l);
 
 } // namespace bake
 

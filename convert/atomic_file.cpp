@@ -18,7 +18,7 @@ namespace
 {
 
 // What a signal handler may touch: plain arrays, and unlink(). One slot per
-// output: asset, report and dump.
+// output: asset, its source text, report and dump.
 constexpr int slots = 4;
 constexpr size_t path_bytes = 4096;
 char pending[slots][path_bytes];
@@ -55,6 +55,18 @@ mode_t default_mode()
 
 } // namespace
 
+void memory_output::write(const void *data, size_t bytes)
+{
+    const auto *p = static_cast<const uint8_t *>(data);
+
+    bytes_.insert(bytes_.end(), p, p + bytes);
+}
+
+void memory_output::write_at(long offset, const void *data, size_t bytes)
+{
+    std::memcpy(&bytes_[size_t(offset)], data, bytes);
+}
+
 atomic_file::atomic_file(const std::string &path) : path_(path)
 {
     std::error_code none;
@@ -84,6 +96,8 @@ atomic_file::~atomic_file()
         std::fclose(file_);
     if (!temporary_.empty())
         unlink(temporary_.c_str());
+    if (!old_.empty())
+        unlink(old_.c_str());
     if (slot_ >= 0)
         pending[slot_][0] = '\0';
 }
@@ -115,11 +129,41 @@ void atomic_file::finish()
         fail("cannot be written");
 }
 
+// The old file keeps a second name until all is done. Where links are not to
+// be had, a rename that fails cannot be taken back, but loses nothing.
 void atomic_file::commit()
 {
+    const std::string old = temporary_ + "~";
+
+    if (link(path_.c_str(), old.c_str()) == 0)
+        old_ = old;
+    else
+        fresh_ = errno == ENOENT;
     if (std::rename(temporary_.c_str(), path_.c_str()) != 0)
         fail("cannot be renamed into place");
     temporary_.clear();
+}
+
+void atomic_file::undo()
+{
+    if (fresh_)
+        unlink(path_.c_str());
+    else if (!old_.empty() && std::rename(old_.c_str(), path_.c_str()) == 0)
+        old_.clear();
+}
+
+void commit_all(const std::vector<atomic_file *> &files)
+{
+    size_t done = 0;
+
+    try {
+        for (; done < files.size(); done++)
+            files[done]->commit();
+    } catch (...) {
+        while (done-- > 0)
+            files[done]->undo();
+        throw;
+    }
 }
 
 } // namespace bake

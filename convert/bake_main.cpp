@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // brume-bake: an OpenVDB or NanoVDB density becomes a brume asset.
-#include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -13,6 +10,8 @@
 #include <tbb/global_control.h>
 
 #include "brume.h"
+#include "budget.hpp"
+#include "options.hpp"
 #include "report.hpp"
 #include "resample.hpp"
 
@@ -35,162 +34,6 @@ const std::string within_limits =
     "the smallest with rmse <= 1 % of the mean and max <= 1/255 of the "
     "maximum";
 const std::string most_exact = "the most exact, beyond the limits of auto";
-
-constexpr int most_lod = 8;
-constexpr int most_threads = 1024;
-
-const char usage[] =
-    "usage: brume-bake IN.vdb|IN.nvdb -o OUT.brume [option]...\n"
-    "\n"
-    "Bake the density of an OpenVDB or NanoVDB file into a brume asset.\n"
-    "\n"
-    "  -o FILE              the asset to write\n"
-    "  --grid NAME|#i       the grid to take, by name or index from 0\n"
-    "  --format F           auto (default), u8, u8r or u4r\n"
-    "  --lod N              halve the resolution N times, 0 to 8\n"
-    "  --max-density D      limit the density to D\n"
-    "  --apron              store 9^3 voxels per brick, for fast trilinear\n"
-    "  --order O            number bricks in morton (default) or linear "
-    "order\n"
-    "  --level-set-to-fog   convert a level set to a density\n"
-    "  --report FILE        write figures as JSON\n"
-    "  --dump-float FILE    write the voxels before quantisation\n"
-    "  --threads N          use N threads (default: all); the output is the "
-    "same\n"
-    "  --help               this text\n"
-    "\n"
-    "Exit status: 0 done, 1 the input cannot be baked or a file not\n"
-    "written, 2 wrong usage or a grid must be chosen.\n";
-
-struct options {
-    std::string input, output, grid, format = "auto", report, dump;
-    int lod = 0, threads = 0;
-    float max_density = 0; // 0: no limit
-    bool apron = false, fog = false, help = false;
-    brick_order order = brick_order::morton;
-};
-
-[[noreturn]] void bad_usage(const std::string &what)
-{
-    throw failure(what + " (see brume-bake --help)", status_usage);
-}
-
-int whole_number(const std::string &key, const char *s, int lo, int hi)
-{
-    char *end;
-
-    errno = 0;
-    const long v = std::strtol(s, &end, 10);
-    if (end == s || *end != '\0' || errno != 0 || v < lo || v > hi)
-        bad_usage(text("%s takes a number from %d to %d, not \"%s\"",
-                       key.c_str(), lo, hi, s));
-    return int(v);
-}
-
-float positive_number(const std::string &key, const char *s)
-{
-    char *end;
-    const float v = std::strtof(s, &end);
-
-    if (end == s || *end != '\0' || !std::isfinite(v) || v <= 0)
-        bad_usage(key + " takes a number above 0, not \"" + s + "\"");
-    return v;
-}
-
-// Options that take a value. Returns false for a key that is not one.
-bool set_value(options &o, const std::string &key, const char *v)
-{
-    if (key == "-o")
-        o.output = v;
-    else if (key == "--grid")
-        o.grid = v;
-    else if (key == "--format")
-        o.format = v;
-    else if (key == "--lod")
-        o.lod = whole_number(key, v, 0, most_lod);
-    else if (key == "--max-density")
-        o.max_density = positive_number(key, v);
-    else if (key == "--order" && !std::strcmp(v, "linear"))
-        o.order = brick_order::linear;
-    else if (key == "--order" && std::strcmp(v, "morton") != 0)
-        bad_usage("--order is morton or linear, not \"" + std::string(v) +
-                  "\"");
-    else if (key == "--report")
-        o.report = v;
-    else if (key == "--dump-float")
-        o.dump = v;
-    else if (key == "--threads")
-        o.threads = whole_number(key, v, 1, most_threads);
-    else if (key != "--order")
-        return false;
-    return true;
-}
-
-bool set_flag(options &o, const std::string &key)
-{
-    if (key == "--apron")
-        o.apron = true;
-    else if (key == "--level-set-to-fog")
-        o.fog = true;
-    else if (key == "--help" || key == "-h")
-        o.help = true;
-    else
-        return false;
-    return true;
-}
-
-int format_id(const std::string &name)
-{
-    for (int id : {BRUME_U8, BRUME_U8R, BRUME_U4R})
-        if (name == brick_format{id, 8, 1}.name())
-            return id;
-    return 0;
-}
-
-void check_options(const options &o)
-{
-    std::error_code none;
-
-    if (o.input.empty())
-        bad_usage("no input file");
-    if (o.output.empty())
-        bad_usage("no output file: -o FILE is missing");
-    if (o.format != "auto" && format_id(o.format) == 0)
-        bad_usage("--format is auto, u8, u8r or u4r, not \"" + o.format + "\"");
-    for (const std::string &out : {o.output, o.report, o.dump})
-        if (std::filesystem::equivalent(o.input, out, none))
-            bad_usage(out + ": is the input itself");
-    if (o.output == o.report || o.output == o.dump ||
-        (o.report == o.dump && !o.dump.empty()))
-        bad_usage("two outputs have one name");
-}
-
-options parse(int count, char **args)
-{
-    options o;
-
-    for (int i = 1; i < count; i++) {
-        std::string key = args[i];
-        const size_t equals = key.find('=');
-        if (key.empty() || key[0] != '-') {
-            if (!o.input.empty())
-                bad_usage("two inputs: " + o.input + " and " + key);
-            o.input = key;
-        } else if (set_flag(o, key)) {
-            continue;
-        } else if (equals != std::string::npos &&
-                   set_value(o, key.substr(0, equals), args[i] + equals + 1)) {
-            continue;
-        } else if (!set_value(o, key, i + 1 < count ? args[i + 1] : "1")) {
-            bad_usage("unknown option " + key);
-        } else if (++i >= count) {
-            bad_usage(key + " needs a value");
-        }
-    }
-    if (!o.help)
-        check_options(o);
-    return o;
-}
 
 class stopwatch
 {
@@ -222,8 +65,13 @@ class baker
         src_ = read_source(o_.input, o_.grid, o_.fog, bar_);
         r_.seconds.read = watch_.lap();
         prepare_voxels();
+        if (o_.budget == 0)
+            take_lod(std::max(o_.lod, 0));
         r_.seconds.voxels = watch_.lap();
-        quantise_voxels();
+        if (o_.budget > 0)
+            fit_budget();
+        else
+            quantise_voxels();
         r_.seconds.quantise = watch_.lap();
         bar_.clear();
         write();
@@ -237,6 +85,8 @@ class baker
     void open_outputs()
     {
         asset_ = std::make_unique<atomic_file>(o_.output);
+        if (o_.form() == output_form::assembly)
+            included_ = std::make_unique<atomic_file>(included_path(o_.output));
         if (!o_.report.empty())
             report_ = std::make_unique<atomic_file>(o_.report);
         if (!o_.dump.empty())
@@ -282,20 +132,34 @@ class baker
                         std::hypot(src_.vol.world[0], src_.vol.world[4],
                                    src_.vol.world[8])));
         }
-        for (int i = 0; i < o_.lod; i++)
-            src_.vol = halve(src_.vol);
         if (o_.max_density > 0)
             clamp(src_.vol, o_.max_density);
-        m_ = measure(src_.vol);
-        if (m_.voxels == 0)
+    }
+
+    void require_density(const measures &m) const
+    {
+        if (m.voxels == 0)
             throw failure("grid \"" + src_.name +
                           "\" has no voxel with "
                           "density above 0");
-        l_ = make_layout(src_.vol, m_.tight, o_.apron ? apron_side : block_side,
-                         o_.order);
     }
 
-    bool make(int format, const quantisation_error &limit)
+    int side() const
+    {
+        return o_.apron ? apron_side : block_side;
+    }
+
+    void take_lod(int lod)
+    {
+        for (int i = 0; i < lod; i++)
+            src_.vol = halve(src_.vol);
+        r_.lod = lod;
+        m_ = measure(src_.vol);
+        require_density(m_);
+        l_ = make_layout(src_.vol, m_.tight, side(), o_.order);
+    }
+
+    bool make(int format, const brick_limits &limit)
     {
         return make_bricks(src_.vol, m_, l_, {format, l_.side, m_.max}, limit,
                            bar_, pool_);
@@ -305,42 +169,60 @@ class baker
     // its ranges, and the most exact.
     void quantise_voxels()
     {
-        const quantisation_error limit = {auto_rmse * m_.mean,
-                                          auto_worst * double(m_.max)};
+        brick_limits limits;
+        limits.error = {auto_rmse * m_.mean, auto_worst * double(m_.max)};
+        const quantisation_error &limit = limits.error;
         const quantisation_error &e = pool_.error;
         std::string failed;
 
         if (o_.format != "auto") {
             r_.why = "asked for";
-            make(format_id(o_.format), no_limit);
+            make(o_.formats()[0], {});
             return;
         }
         for (int id : {BRUME_U4R, BRUME_U8}) {
-            if (make(id, limit)) {
+            if (make(id, limits)) {
                 r_.why = within_limits + failed;
                 return;
             }
             failed += text("; %s %s too large", pool_.format.name(),
                            e.rmse > limit.rmse ? "rmse" : "max error");
         }
-        make(BRUME_U8R, no_limit);
+        make(BRUME_U8R, {});
         const bool good = e.rmse <= limit.rmse && e.worst <= limit.worst;
         r_.why = (good ? within_limits : most_exact) + failed;
     }
 
-    void write()
+    // Search, then make the choice again and hold it against the input.
+    void fit_budget()
     {
-        // Their pages then hold the file on its way to the disk, which is
-        // quicker than to ask the kernel for new ones.
-        if (!dump_)
-            src_.vol.drop_voxels();
-        r_.size = write_asset(*asset_, src_.vol, m_, l_, pool_, src_.name);
-        asset_->finish();
-        if (dump_) {
-            write_float_dump(*dump_, src_.vol, l_);
-            dump_->finish();
-        }
-        r_.seconds.write = watch_.lap();
+        const int last = o_.lod >= 0 ? o_.lod : most_lod;
+        budget_search search({o_.budget, o_.formats(), std::max(o_.lod, 0),
+                              last, side(), o_.order, src_.name},
+                             std::move(src_.vol), bar_);
+        require_density(search.input_measures());
+        const candidate best = search.choose();
+
+        r_.lod = best.lod;
+        m_ = search.measures_at(best.lod);
+        l_ =
+            make_layout(search.volume_at(best.lod), m_.tight, side(), o_.order);
+        make_bricks(search.volume_at(best.lod), m_, l_,
+                    {best.format, l_.side, m_.max}, {}, bar_, pool_);
+        r_.budget.bytes = o_.budget;
+        r_.budget.tried = search.tried();
+        r_.budget.input_max = double(search.input_measures().max);
+        r_.budget.error = measure_grid_error(search.volume_at(0),
+                                             search.input_measures().voxels, l_,
+                                             pool_, best.lod, bar_);
+        r_.why = text("the least error that fits into %llu bytes",
+                      (unsigned long long)o_.budget);
+        src_.vol = search.take_volume(best.lod);
+        notice(budget_notice(r_.budget, best));
+    }
+
+    void fill_report()
+    {
         r_.input = o_.input;
         r_.output = o_.output;
         r_.asked_format = o_.format;
@@ -348,21 +230,59 @@ class baker
         r_.m = &m_;
         r_.l = &l_;
         r_.pool = &pool_;
-        r_.lod = o_.lod;
+        r_.size = size_of_asset(pool_, src_.name);
+        if (o_.form() != output_form::binary)
+            r_.symbol = o_.symbol.empty() ? symbol_for(o_.output) : o_.symbol;
+    }
+
+    void write_form()
+    {
+        const source_text t = {o_.output, r_.symbol,
+                               o_.licence.empty() ? src_.licence : o_.licence,
+                               facts(r_)};
+        const auto bake_to = [&](output &out) {
+            write_asset(out, src_.vol, m_, l_, pool_, src_.name);
+        };
+
+        if (o_.form() == output_form::binary) {
+            bake_to(*asset_);
+        } else if (o_.form() == output_form::c) {
+            memory_output bytes;
+            bake_to(bytes);
+            write_c(*asset_, t, bytes.bytes());
+        } else {
+            bake_to(*included_);
+            write_assembly(*asset_, t, r_.size.total);
+        }
+    }
+
+    void write()
+    {
+        fill_report();
+        // Their pages then hold the file on its way to the disk, which is
+        // quicker than to ask the kernel for new ones.
+        if (!dump_)
+            src_.vol.drop_voxels();
+        write_form();
+        if (dump_)
+            write_float_dump(*dump_, src_.vol, l_);
+        r_.seconds.write = watch_.lap();
         if (report_) {
             const std::string json = to_json(r_);
             report_->write(json.data(), json.size());
-            report_->finish();
-            report_->commit();
         }
-        if (dump_)
-            dump_->commit();
-        asset_->commit();
+        std::vector<atomic_file *> all;
+        for (const file *f : {&report_, &dump_, &included_, &asset_})
+            if (*f)
+                all.push_back(f->get());
+        for (atomic_file *f : all)
+            f->finish();
+        commit_all(all);
     }
 
     const options &o_;
     stopwatch watch_;
-    file asset_, report_, dump_;
+    file asset_, included_, report_, dump_;
     progress bar_;
     source src_;
     measures m_;

@@ -216,8 +216,7 @@ class brick_store
 
 void check_blob(const brick_pool &p)
 {
-    const uint64_t bytes = p.bytes.size() + 4 * p.cells.size() +
-                           (p.format.has_ranges() ? 4 * p.bricks : 0) + 4096;
+    const uint64_t bytes = pool_bytes(p) + 4096;
 
     if (bytes >= blob_limit)
         throw failure(text("more than %llu bricks of %zu bytes with %zu cells "
@@ -272,8 +271,8 @@ quantisation_error probe(const volume &vol, const measures &m, const layout &l,
 class pool_maker
 {
   public:
-    pool_maker(const measures &m, const layout &l,
-               const quantisation_error &limit, brick_pool &pool)
+    pool_maker(const measures &m, const layout &l, const brick_limits &limit,
+               brick_pool &pool)
         : m_(m), l_(l), limit_(limit), pool_(pool), store_(pool)
     {
         pool.cells.assign(l.cell_count(), BRUME_CELL_EMPTY | 255);
@@ -281,7 +280,7 @@ class pool_maker
             l.jobs.size() * pool.format.bytes(), blob_limit));
     }
 
-    // Returns false when the error passes the limit.
+    // Returns false when the error or the size passes its limit.
     bool add(const batch &b)
     {
         const size_t bytes = pool_.format.bytes(), end = b.first + b.count;
@@ -295,11 +294,13 @@ class pool_maker
                 store_.number(&b.codes[i * bytes], r.r, b.hashes[i]);
             pool_.occupied++;
         }
+        if (pool_bytes(pool_) > limit_.bytes)
+            return false;
         check_blob(pool_);
         if (end % check_bricks != 0 && end != l_.jobs.size())
             return true;
         pool_.error = sum_.in_density(m_, pool_.format);
-        return within(pool_.error, limit_);
+        return within(pool_.error, limit_.error);
     }
 
     void finish()
@@ -312,13 +313,19 @@ class pool_maker
   private:
     const measures &m_;
     const layout &l_;
-    const quantisation_error limit_;
+    const brick_limits limit_;
     brick_pool &pool_;
     brick_store store_;
     error_sum sum_;
 };
 
 } // namespace
+
+uint64_t pool_bytes(const brick_pool &p)
+{
+    return p.bytes.size() + 4 * p.cells.size() +
+           (p.format.has_ranges() ? 4 * p.bricks : 0);
+}
 
 layout make_layout(const volume &vol, const box &tight, int side,
                    brick_order order)
@@ -353,7 +360,7 @@ layout make_layout(const volume &vol, const box &tight, int side,
 }
 
 bool make_bricks(const volume &vol, const measures &m, const layout &l,
-                 const brick_format &f, const quantisation_error &limit,
+                 const brick_format &f, const brick_limits &limit,
                  progress &bar, brick_pool &pool)
 {
     const size_t all = l.jobs.size();
@@ -362,9 +369,9 @@ bool make_bricks(const volume &vol, const measures &m, const layout &l,
 
     pool = {};
     pool.format = f;
-    if (std::isfinite(limit.worst)) {
+    if (std::isfinite(limit.error.worst)) {
         pool.error = probe(vol, m, l, f);
-        if (!within(pool.error, limit))
+        if (!within(pool.error, limit.error))
             return false;
     }
     pool_maker maker(m, l, limit, pool);

@@ -65,13 +65,20 @@ struct brick_pool {
     quantisation_error error;
 };
 
-constexpr quantisation_error no_limit = {INFINITY, INFINITY};
+// What a pool must keep to. `bytes` counts cells, bricks and ranges.
+struct brick_limits {
+    quantisation_error error = {INFINITY, INFINITY};
+    uint64_t bytes = UINT64_MAX;
+};
 
-// Quantise all bricks, share identical ones, fill in the distances. Errors
-// only add up: as soon as one passes its limit this returns false, with the
-// error so far in `pool` and nothing else of use.
+// Bytes of the sections that a pool makes so far.
+uint64_t pool_bytes(const brick_pool &pool);
+
+// Quantise all bricks, share identical ones, fill in the distances. Errors and
+// bytes only add up: as soon as one passes its limit this returns false, with
+// the figures so far in `pool` and nothing else of use.
 bool make_bricks(const volume &vol, const measures &m, const layout &l,
-                 const brick_format &f, const quantisation_error &limit,
+                 const brick_format &f, const brick_limits &limit,
                  progress &bar, brick_pool &pool);
 
 // Write the Chebyshev distance to the nearest occupied cell, up to 255, into

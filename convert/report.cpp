@@ -2,6 +2,7 @@
 #include "report.hpp"
 
 #include <cmath>
+#include <filesystem>
 
 namespace bake
 {
@@ -154,6 +155,54 @@ std::string seconds_json(const stage_seconds &s)
     return o.close();
 }
 
+const char *format_of(const candidate &c)
+{
+    return brick_format{c.format, block_side, 1}.name();
+}
+
+std::string read_json(const read_error &e, double density_max)
+{
+    json_object o(4);
+
+    o.add("rmse", e.rmse);
+    o.add("mean", e.mean);
+    o.add("max", e.worst);
+    o.add("rmse_over_max", e.rmse / density_max);
+    o.add("mean_over_max", e.mean / density_max);
+    o.add("max_over_max", e.worst / density_max);
+    return o.close();
+}
+
+// Sizes and errors of candidates that were given up are not known.
+std::string candidate_json(const candidate &c, double density_max)
+{
+    return text("{\"lod\": %d, \"format\": \"%s\", \"fits\": %s, "
+                "\"bytes\": %s, \"bytes_at_least\": %llu, "
+                "\"rmse_over_max\": %s}",
+                c.lod, format_of(c), c.fits ? "true" : "false",
+                c.complete ? std::to_string(c.bytes).c_str() : "null",
+                (unsigned long long)c.bytes,
+                c.complete ? text("%.9g", c.rmse / density_max).c_str()
+                           : "null");
+}
+
+std::string budget_json(const budget_report &b)
+{
+    json_object o(2), error(3);
+    std::string list;
+
+    error.raw("nearest", read_json(b.error.nearest, b.input_max));
+    error.raw("trilinear", read_json(b.error.trilinear, b.input_max));
+    o.add("limit", b.bytes);
+    o.add("input_density_max", b.input_max);
+    o.raw("error", error.close());
+    for (const candidate &c : b.tried)
+        list += (list.empty() ? "\n      " : ",\n      ") +
+                candidate_json(c, b.input_max);
+    o.raw("candidates", "[" + list + "\n    ]");
+    return o.close();
+}
+
 } // namespace
 
 std::string to_json(const report &r)
@@ -167,7 +216,54 @@ std::string to_json(const report &r)
     o.raw("asset", asset_json(r));
     o.raw("quantisation_error", error_json(r));
     o.raw("seconds", seconds_json(r.seconds));
+    if (r.budget.bytes > 0)
+        o.raw("budget", budget_json(r.budget));
     return o.close() + "\n";
+}
+
+std::string budget_notice(const budget_report &b, const candidate &chosen)
+{
+    const double percent = 100 / b.input_max;
+
+    return text("a budget of %llu bytes: %s at level of detail %d takes "
+                "%llu; error against the input, of its maximum: rmse %.3g %%, "
+                "mean %.2g %% nearest, %.3g %%, %.2g %% trilinear",
+                (unsigned long long)b.bytes, format_of(chosen), chosen.lod,
+                (unsigned long long)chosen.bytes,
+                percent * b.error.nearest.rmse, percent * b.error.nearest.mean,
+                percent * b.error.trilinear.rmse,
+                percent * b.error.trilinear.mean);
+}
+
+std::vector<std::string> facts(const report &r)
+{
+    const ijk lo = r.m->tight.lo, hi = r.m->tight.hi;
+    const brick_pool &p = *r.pool;
+    const read_error &n = r.budget.error.nearest, &t = r.budget.error.trilinear;
+    std::vector<std::string> list = {
+        "grid      \"" + r.src->name + "\" of " +
+            std::filesystem::path(r.input).filename().string(),
+        text("voxels    %d x %d x %d, %llu with density, at level of detail %d",
+             hi.x - lo.x + 1, hi.y - lo.y + 1, hi.z - lo.z + 1,
+             (unsigned long long)r.m->voxels, r.lod),
+        text("density   max %.6g, mean %.6g", double(p.format.density_max),
+             r.m->mean),
+        text("bricks    %llu of %d^3, in %d x %d x %d cells",
+             (unsigned long long)p.bricks, p.format.side, r.l->cells.x,
+             r.l->cells.y, r.l->cells.z),
+        text("format    %s, %llu bytes", p.format.name(),
+             (unsigned long long)r.size.total),
+        text("error     rmse %.3g, max %.3g (%.3g %% and %.3g %% of the mean)",
+             p.error.rmse, p.error.worst, 100 * p.error.rmse / r.m->mean,
+             100 * p.error.worst / r.m->mean)};
+
+    if (r.budget.bytes > 0)
+        list.push_back(text("          of the input: rmse %.3g nearest, %.3g "
+                            "trilinear (%.3g %% "
+                            "and %.3g %% of its max)",
+                            n.rmse, t.rmse, 100 * n.rmse / r.budget.input_max,
+                            100 * t.rmse / r.budget.input_max));
+    return list;
 }
 
 std::string summary(const report &r)
@@ -197,6 +293,9 @@ std::string summary(const report &r)
               r.output.c_str(), (unsigned long long)r.size.total,
               r.seconds.total(), r.seconds.read, r.seconds.voxels,
               r.seconds.quantise, r.seconds.write);
+    if (!r.symbol.empty())
+        s += text("symbols %s and %s_size\n", r.symbol.c_str(),
+                  r.symbol.c_str());
     return s;
 }
 

@@ -5,8 +5,10 @@
 #define BRUME_CONVERT_REPORT_HPP
 
 #include <string>
+#include <vector>
 
 #include "asset_writer.hpp"
+#include "budget.hpp"
 #include "source.hpp"
 
 namespace bake
@@ -21,8 +23,18 @@ struct stage_seconds {
     }
 };
 
+// What `--budget` did.
+struct budget_report {
+    uint64_t bytes = 0; // 0: there was none
+    std::vector<candidate> tried;
+    grid_error error; // of the one chosen
+    double input_max = 0;
+};
+
 struct report {
     std::string input, output, asked_format, why;
+    std::string symbol; // in C or assembly
+    budget_report budget;
     const source *src = nullptr;
     const measures *m = nullptr;
     const layout *l = nullptr;
@@ -34,6 +46,12 @@ struct report {
 };
 
 std::string to_json(const report &r);
+
+// What was chosen and what it costs, in a line.
+std::string budget_notice(const budget_report &b, const candidate &chosen);
+
+// For the comment of C or assembly, a line each.
+std::vector<std::string> facts(const report &r);
 
 // Three to six lines.
 std::string summary(const report &r);

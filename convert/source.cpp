@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "source.hpp"
 
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -64,7 +65,7 @@ class vdb_head : public openvdb::io::Archive
         readHeader(in);
         has_offsets = inputHasGridOffsets();
         openvdb::io::setCurrentVersion(in);
-        openvdb::MetaMap().readMeta(in);
+        file_meta.readMeta(in);
         const int32_t count = readGridCount(in);
         for (int32_t i = 0; has_offsets && i < count; i++) {
             GridDescriptor d;
@@ -110,8 +111,26 @@ class vdb_head : public openvdb::io::Archive
     }
 
     bool has_offsets;
+    openvdb::MetaMap file_meta;
     std::vector<GridDescriptor> grids;
 };
+
+// What metadata says of rights, in whichever of the usual fields.
+std::string find_licence(const openvdb::MetaMap &meta)
+{
+    std::string all;
+
+    for (auto i = meta.beginMeta(); i != meta.endMeta(); ++i) {
+        std::string key = i->first;
+        for (char &c : key)
+            c = char(std::tolower(uint8_t(c)));
+        const bool found = key.find("licen") != std::string::npos ||
+                           key.find("copyright") != std::string::npos;
+        if (found && i->second->typeName() == "string")
+            all += (all.empty() ? "" : "\n") + i->second->str();
+    }
+    return all;
+}
 
 grid_entry describe(const openvdb::GridBase &grid, uint64_t voxels)
 {
@@ -168,9 +187,11 @@ openvdb::GridBase::Ptr read_streamed(const std::string &path,
 }
 
 openvdb::GridBase::Ptr read_vdb(const std::string &path,
-                                const std::string &choice, bool fog)
+                                const std::string &choice, bool fog,
+                                std::string &licence)
 {
     vdb_head head(path);
+    licence = find_licence(head.file_meta);
     openvdb::io::File file(path);
     std::vector<grid_entry> entries;
 
@@ -282,14 +303,18 @@ source read_source(const std::string &path, const std::string &choice,
                    bool level_set_to_fog, progress &bar)
 try {
     source s;
+    std::string file_licence;
     openvdb::GridBase::Ptr grid =
         find_kind(path) == file_kind::nano
             ? read_nano(path, choice)
-            : read_vdb(path, choice, level_set_to_fog);
+            : read_vdb(path, choice, level_set_to_fog, file_licence);
 
     const grid_entry e = describe(*grid, 0);
     check_scalar(e);
     check_class(e, level_set_to_fog);
+    s.licence = find_licence(*grid);
+    if (s.licence.empty())
+        s.licence = file_licence;
     if (grid->getGridClass() == openvdb::GRID_LEVEL_SET) {
         grid = make_fog(grid);
         s.from_level_set = true;

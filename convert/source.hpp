@@ -17,6 +17,7 @@ namespace bake
 
 struct source {
     std::string name, type, grid_class;
+    std::string licence; // as the file has it, often not at all
     volume vol;
     bad_voxels bad;
     uint64_t active = 0;

@@ -151,6 +151,28 @@ void several()
     save("name.vdb", named);
 }
 
+void licences()
+{
+    auto g = ball<FloatGrid>(5);
+    MetaMap meta;
+
+    meta.insertMeta("Copyright", StringMetadata("CC0 of the file"));
+    io::File(folder + "/licensed_file.vdb").write(GridPtrVec{g}, meta);
+    g->insertMeta("license", StringMetadata("CC0 of the grid"));
+    io::File(folder + "/licensed.vdb").write(GridPtrVec{g}, meta);
+}
+
+// Ones at even coordinates in zeros.
+void lattice()
+{
+    auto g = new_grid<FloatGrid>("density");
+    auto a = g->getAccessor();
+
+    for (int i = 0; i < 16 * 16 * 16; i++)
+        a.setValue(Coord(2 * (i % 16), 2 * (i / 16 % 16), 2 * (i / 256)), 1);
+    save("lattice.vdb", g);
+}
+
 } // namespace
 
 int main(int count, char **args)
@@ -164,5 +186,7 @@ int main(int count, char **args)
     bad_values();
     transforms();
     several();
+    licences();
+    lattice();
     return 0;
 }

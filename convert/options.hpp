@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+//
+// The command line of brume-bake.
+#ifndef BRUME_CONVERT_OPTIONS_HPP
+#define BRUME_CONVERT_OPTIONS_HPP
+
+#include <string>
+#include <vector>
+
+#include "bricks.hpp"
+#include "source_text.hpp"
+
+namespace bake
+{
+
+constexpr int most_lod = 8;
+
+struct options {
+    std::string input, output, grid, format = "auto", report, dump;
+    std::string symbol, licence;
+    int lod = -1; // -1: not given
+    int threads = 0;
+    uint64_t budget = 0;   // bytes; 0: not given
+    float max_density = 0; // 0: no limit
+    bool apron = false, fog = false, help = false;
+    brick_order order = brick_order::morton;
+
+    // The formats that `--format` leaves to choose from.
+    std::vector<int> formats() const;
+    output_form form() const
+    {
+        return form_of(output);
+    }
+};
+
+extern const char usage[];
+
+// Throws `failure` with status_usage.
+options parse(int count, char **args);
+
+} // namespace bake
+
+#endif
