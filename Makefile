@@ -10,6 +10,11 @@ CONF ?= host
 PREFIX ?= /usr/local
 DATA ?= ../shared/data
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
+
+include platform/$(CONF)/conf.mk
+ifneq ($(CONF),host)
+include platform/targets.mk
+endif
 CFLAGS ?= -O3
 CXXFLAGS ?= -O2
 CPPFLAGS += -Icore
@@ -23,10 +28,12 @@ PACKAGES = gcc g++ libc6-dev libopenvdb-dev libnanovdb-dev libboost-dev \
 	libblosc-dev zlib1g-dev
 TEST_PACKAGES = $(PACKAGES) clang libclang-rt-14-dev binutils netpbm pngcheck
 
-include platform/$(CONF)/conf.mk
-
 CORE_OBJ = $(patsubst core/%.c,$(BUILD)/core/%.o,$(wildcard core/*.c))
-HOST_OBJ = $(patsubst platform/%.c,$(BUILD)/%.o,$(HOST_SRC))
+TABLE_OBJ = $(patsubst %.c,$(BUILD)/%.o,$(wildcard tables/noise_*.c) \
+	tables/nrooks.c)
+NOISE_OBJ = $(patsubst %.c,$(BUILD)/%.o,\
+	$(filter-out %_main.c,$(wildcard tables/noise/*.c)))
+HOST_OBJ = $(patsubst platform/%.c,$(BUILD)/%.o,$(HOST_SRC)) $(TABLE_OBJ)
 CONVERT_OBJ = $(patsubst convert/%.cpp,$(BUILD)/convert/%.o,\
 	$(filter-out %_main.cpp,$(wildcard convert/*.cpp)))
 REFERENCE_OBJ = $(patsubst tests/%.cpp,$(BUILD)/tests/%.o,\
@@ -35,19 +42,24 @@ TEST_LIB_OBJ = $(patsubst tests/%.c,$(BUILD)/tests/%.o,\
 	$(wildcard tests/support/*.c)) $(filter-out %/main.o,$(HOST_OBJ))
 TESTS = $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c)) \
 	$(patsubst tests/%.cpp,$(BUILD)/tests/%,$(wildcard tests/test_*.cpp))
-PROGRAMS = $(BUILD)/brume $(BUILD)/brume-bake $(BUILD)/brume-cloud
+PROGRAMS = $(BUILD)/brume $(BUILD)/brume-bake $(BUILD)/brume-cloud \
+	$(BUILD)/brume-noise
+TARGET_PROGRAMS = $(PROGRAMS) $(BUILD)/tests/hash_scenes
 TEST_PROGRAMS = $(TESTS) $(BUILD)/brume-reference $(BUILD)/brume-spec-dump \
 	$(BUILD)/tests/hash_scenes $(BUILD)/tests/section_dump \
-	$(BUILD)/tests/make_vdbs
+	$(BUILD)/tests/make_vdbs $(BUILD)/tests/noise_march
 
-.PHONY: all demo test golden bench deps test-deps install clean help
+.PHONY: all demo test golden bench targets targets-update targets-deps \
+	deps test-deps install clean help
 .DELETE_ON_ERROR:
 
+ifeq ($(CONF),host)
 all: $(PROGRAMS) ## build the programs
 
 demo: deps ## make a cloud (or take VDB=file), bake it, draw pictures of it
 	@$(MAKE) --no-print-directory -j$(JOBS) all
 	@BUILD=$(BUILD) VDB="$(VDB)" sh platform/host/demo.sh
+endif
 
 test: test-deps ## build and run every test of this machine
 	@$(MAKE) --no-print-directory -j$(JOBS) all $(TEST_PROGRAMS)
@@ -55,6 +67,13 @@ test: test-deps ## build and run every test of this machine
 
 golden: $(PROGRAMS) $(TEST_PROGRAMS) ## renew the golden pictures and hashes
 	@BUILD=$(BUILD) DATA=$(DATA) sh tests/golden.sh update
+
+targets: targets-deps ## one image on every target: build, run, compare, table
+	@$(MAKE) --no-print-directory -j$(JOBS) $(TARGET_PROGRAMS)
+	@BUILD=$(BUILD) DATA=$(DATA) JOBS=$(JOBS) sh tests/targets/run.sh
+
+targets-update: $(TARGET_PROGRAMS) ## renew counts.txt and docs/TARGETS.md
+	@BUILD=$(BUILD) DATA=$(DATA) JOBS=$(JOBS) sh tests/targets/run.sh update
 
 bench: $(PROGRAMS) ## what the choices of format and order cost and gain
 	@BUILD=$(BUILD) DATA=$(DATA) sh tests/bench.sh
@@ -64,6 +83,9 @@ deps: ## install the packages that the programs need, if any is missing
 
 test-deps: ## the same for the tests
 	@sh platform/host/deps.sh $(TEST_PACKAGES)
+
+targets-deps: ## the same for the targets: cross compilers and emulators
+	@sh platform/host/deps.sh $$(sh tests/targets/run.sh packages)
 
 install: $(PROGRAMS) $(BUILD)/libbrume.a ## to PREFIX
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include \
@@ -76,8 +98,8 @@ clean: ## remove what was built
 	rm -rf $(BUILD)
 
 help: ## this list
-	@sed -n 's/^\([a-z-]*\):.*## /  make \1|/p' $(MAKEFILE_LIST) | \
-		awk -F'|' '{ printf "%-16s %s\n", $$1, $$2 }'
+	@sed -n 's/^\([a-z-]*\):.*## /  make \1|/p' Makefile platform/targets.mk | \
+		awk -F'|' '{ printf "%-21s %s\n", $$1, $$2 }'
 
 # Programs
 $(BUILD)/brume: $(HOST_OBJ) $(BUILD)/libbrume.a
@@ -94,6 +116,10 @@ $(BUILD)/libconvert.a: $(CONVERT_OBJ)
 $(BUILD)/brume-%: $(BUILD)/convert/%_main.o $(BUILD)/libconvert.a
 	$(CXX) $(LDFLAGS) -o $@ $^ $(CONVERT_LIBS)
 
+$(BUILD)/brume-noise: $(BUILD)/tables/noise/noise_main.o $(NOISE_OBJ) \
+		$(filter-out %/main.o,$(HOST_OBJ)) $(BUILD)/libbrume.a
+	$(CC) $(LDFLAGS) -o $@ $^ -lm -lpthread
+
 $(BUILD)/brume-reference: $(BUILD)/tests/reference/reference_main.o \
 		$(REFERENCE_OBJ)
 	$(CXX) $(LDFLAGS) -o $@ $^ -lpthread
@@ -107,6 +133,10 @@ $(BUILD)/tests/hash_scenes: $(BUILD)/tests/hash_scenes.o $(TEST_LIB_OBJ) \
 		$(BUILD)/libbrume.a
 	$(CC) $(LDFLAGS) -o $@ $^ -lm -lpthread
 
+$(BUILD)/tests/noise_march: $(BUILD)/tests/noise_march.o $(TEST_LIB_OBJ) \
+		$(BUILD)/libbrume.a
+	$(CC) $(LDFLAGS) -o $@ $^ -lm -lpthread
+
 $(BUILD)/tests/section_dump: $(BUILD)/tests/section_dump.o
 	$(CC) $(LDFLAGS) -o $@ $^ -lm
 
@@ -115,7 +145,7 @@ $(BUILD)/tests/make_vdbs: tests/make_vdbs.cpp
 	$(CXX) $(CONVERT_FLAGS) $(CXXFLAGS) $(LDFLAGS) -o $@ $< $(CONVERT_LIBS)
 
 $(BUILD)/tests/test_%: $(BUILD)/tests/test_%.o $(TEST_LIB_OBJ) \
-		$(REFERENCE_OBJ) $(BUILD)/libbrume.a
+		$(NOISE_OBJ) $(REFERENCE_OBJ) $(BUILD)/libbrume.a
 	$(CXX) $(LDFLAGS) -o $@ $^ -lm -lpthread
 
 # Objects
@@ -123,9 +153,17 @@ $(BUILD)/core/%.o: core/%.c
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(CORE_FLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
 
+$(BUILD)/tables/noise/%.o: tables/noise/%.c
+	@mkdir -p $(@D)
+	$(CC) $(CPPFLAGS) -Iplatform/host $(HOST_FLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
+
+$(BUILD)/tables/%.o: tables/%.c
+	@mkdir -p $(@D)
+	$(CC) $(CPPFLAGS) $(CORE_FLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
+
 $(BUILD)/host/%.o: platform/host/%.c
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(HOST_FLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
+	$(CC) $(CPPFLAGS) -Itables $(HOST_FLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
 
 $(BUILD)/convert/%.o: convert/%.cpp
 	@mkdir -p $(@D)
@@ -138,7 +176,7 @@ $(BUILD)/tests/%.o: tests/%.cpp
 
 $(BUILD)/tests/%.o: tests/%.c
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) -Itests -Iplatform/host $(HOST_FLAGS) $(CFLAGS) \
+	$(CC) $(CPPFLAGS) -Itests -Itables/noise -Iplatform/host $(HOST_FLAGS) $(CFLAGS) \
 		-MMD -MP -c -o $@ $<
 
 .SECONDARY:

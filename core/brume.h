@@ -244,12 +244,13 @@ enum brume_noise { /* docs/noise.md says which to use when */
                    BRUME_NOISE_BAYER4 = 4,
                    BRUME_NOISE_BAYER16 = 5,
                    BRUME_NOISE_IGN_THESIS = 6, /* with other frame offsets */
+                   BRUME_NOISE_RANK1 = 7,      /* a lattice in x, y, frame */
                    /* noise_table, at pixel and frame modulo its size; */
-                   BRUME_NOISE_TABLE = 7,
+                   BRUME_NOISE_TABLE = 8,
                    /* its first slice, plus the golden ratio per frame; */
-                   BRUME_NOISE_TABLE_GOLDEN = 8,
+                   BRUME_NOISE_TABLE_GOLDEN = 9,
                    /* its first slice, moved by the R2 sequence per frame */
-                   BRUME_NOISE_TABLE_R2 = 9
+                   BRUME_NOISE_TABLE_R2 = 10
 };
 
 /* Precomputed noise: 2^width_log2 x 2^height_log2 x 2^frames_log2 values, x

@@ -30,6 +30,16 @@ static uint32_t ign(uint32_t x, uint32_t y, uint32_t moved, uint32_t channel)
     return (52u * u + mul_hi_floor(u, 4221604530u)) >> 16;
 }
 
+/* fract(0.80014635 x + 0.66377714 y + 0.28119233 frame), found by searching
+ * lattices for the least error after accumulation and filters; see
+ * docs/noise.md. */
+static uint32_t rank1(uint32_t x, uint32_t y, uint32_t frame, uint32_t channel)
+{
+    x += 96u * channel;
+    y += 72u * channel;
+    return (x * 3436602405u + y * 2850901108u + frame * 1207711862u) >> 16;
+}
+
 /* Where channel c looks in a tile of side 2^log2: moved by point c of Roberts'
  * R2 sequence, (0.7549, 0.5698), so that channels are nearly independent. */
 static uint32_t channel_x(uint32_t channel, uint32_t log2)
@@ -57,7 +67,7 @@ static uint32_t bayer(uint32_t x, uint32_t y, uint32_t channel, uint32_t log2)
     return (2u * v + 1u) << (15u - 2u * log2);
 }
 
-/* A value of the table, whose sides wrap, in the middle of its bin. */
+/* A value of the table, whose sides wrap, in the middle of its bin of 1/256. */
 static uint32_t table_value(const struct brume_noise_table *t, uint32_t x,
                             uint32_t y, uint32_t frame)
 {
@@ -67,7 +77,9 @@ static uint32_t table_value(const struct brume_noise_table *t, uint32_t x,
     uint32_t i = ((frame << t->height_log2 | y) << t->width_log2) | x;
     if (t->bits == 8)
         return t->values[i] * 256u + 128u;
-    return (t->values[i >> 1] >> ((i & 1u) << 2) & 15u) * 4096u + 2048u;
+    /* Below the upper half, the 4x4 matrix of the place. */
+    uint32_t v = t->values[i >> 1] >> ((i & 1u) << 2) & 15u;
+    return v << 12 | bayer(x & 3u, y & 3u, 0, 2) >> 4;
 }
 
 static uint32_t table(int noise, const struct brume_noise_table *t, uint32_t x,
@@ -99,6 +111,7 @@ uint32_t brume_noise_value(int noise, const struct brume_noise_table *values,
         return ign(x, y, (frame & 63u) * 1750839832u, channel);
     /* (2.083, 4.867) per frame */
     case BRUME_NOISE_IGN_THESIS: return ign(x, y, frame * 722416529u, channel);
+    case BRUME_NOISE_RANK1: return rank1(x, y, frame, channel);
     case BRUME_NOISE_BAYER4: return bayer(x, y, channel, 2);
     case BRUME_NOISE_BAYER8: return bayer(x, y, channel, 3);
     case BRUME_NOISE_BAYER16: return bayer(x, y, channel, 4);

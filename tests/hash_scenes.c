@@ -4,11 +4,15 @@
  * CRC-32 of its RGB888 pixels; `feature` when the core was compiled without
  * what it needs, `absent` when its volume was not given. Compiled by itself
  * with the core, by every compiler and for every target.
+ *
+ * hash_scenes --write DIR: the volumes made here as DIR/NAME.brume, for targets
+ * that have no heap to make them in.
  */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
-#include "support/scenes.h"
+#include "support/volumes.h"
 
 static void print_scene(const struct test_volumes *volumes,
                         const struct test_scene *t)
@@ -39,13 +43,34 @@ static void print_scene(const struct test_volumes *volumes,
     free(pixels);
 }
 
+static int write_volumes(const struct test_volumes *volumes, const char *folder)
+{
+    for (int i = 0; i < volumes->count; i++) {
+        const struct test_volume *v = &volumes->item[i];
+        char path[512];
+        snprintf(path, sizeof path, "%s/%s.brume", folder, v->name);
+        FILE *f = fopen(path, "wb");
+        if (f == NULL ||
+            fwrite(v->asset, 1, v->volume.size, f) != v->volume.size ||
+            fclose(f) != 0) {
+            perror(path);
+            return 1;
+        }
+    }
+    return 0;
+}
+
 int main(int argc, char **argv)
 {
     struct test_volumes volumes;
-    if (test_volumes_make(&volumes, argc, argv) != 0)
+    bool writes = argc == 3 && strcmp(argv[1], "--write") == 0;
+    int status = 0;
+    if (test_volumes_make(&volumes, writes ? 1 : argc, argv) != 0)
         return 1;
-    for (int i = 0; i < test_scene_count; i++)
+    for (int i = 0; !writes && i < test_scene_count; i++)
         print_scene(&volumes, &test_scenes[i]);
+    if (writes)
+        status = write_volumes(&volumes, argv[2]);
     test_volumes_free(&volumes);
-    return 0;
+    return status;
 }

@@ -14,7 +14,7 @@
 #include "compare.h"
 #include "image.h"
 #include "render.h"
-#include "support/scenes.h"
+#include "support/volumes.h"
 #include "tap.h"
 
 #define HASH_LINES 128

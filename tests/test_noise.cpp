@@ -38,6 +38,7 @@ const kind kinds[] = {
     {"bayer4", BRUME_NOISE_BAYER4, reference::noise::bayer4},
     {"bayer16", BRUME_NOISE_BAYER16, reference::noise::bayer16},
     {"ign-thesis", BRUME_NOISE_IGN_THESIS, reference::noise::ign_thesis},
+    {"rank1", BRUME_NOISE_RANK1, reference::noise::rank1},
     {"table", BRUME_NOISE_TABLE, reference::noise::table},
     {"table, golden", BRUME_NOISE_TABLE_GOLDEN, reference::noise::table_golden},
     {"table, r2", BRUME_NOISE_TABLE_R2, reference::noise::table_r2},
@@ -118,9 +119,12 @@ void test_reference_at_random(const kind &k)
               wrong);
 }
 
-// Four bits to a value: the upper halves of a table's bytes.
+// Four bits to a value: the upper halves of a table's bytes, the lower ones
+// from Bayer's matrix 4x4 at the place in the table.
 void test_four_bits()
 {
+    static const uint32_t rows[4][4] = {
+        {0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
     std::vector<uint8_t> packed;
     for (size_t i = 0; i < reference_table.values.size(); i += 2)
         packed.push_back(
@@ -130,10 +134,10 @@ void test_four_bits()
     int wrong = 0;
     for (uint32_t i = 0; i < 4 * 32 * 16; i++) {
         const uint32_t x = i % 32, y = i / 32 % 16, frame = i / 512;
-        const uint32_t wide = brume_noise_value(BRUME_NOISE_TABLE, &core_table,
-                                                x, y, frame, i & 1);
-        wrong += brume_noise_value(BRUME_NOISE_TABLE, &table, x, y, frame,
-                                   i & 1) != (wide & 0xf000) + 2048;
+        const uint32_t wide =
+            brume_noise_value(BRUME_NOISE_TABLE, &core_table, x, y, frame, 0);
+        wrong += brume_noise_value(BRUME_NOISE_TABLE, &table, x, y, frame, 0) !=
+                 (wide & 0xf000) + 256 * rows[y % 4][x % 4] + 128;
     }
     tap_check(wrong == 0, "table of 4 bits (%d wrong)", wrong);
 }

@@ -9,7 +9,7 @@
 
 #include "brume_inner.h"
 #include "render.h"
-#include "support/scenes.h"
+#include "support/volumes.h"
 #include "tap.h"
 
 /// Cuts ///
@@ -342,7 +342,7 @@ static void check_scene_limits(const struct test_volumes *volumes)
     EXPECT(s.background[2] = 0x10001, BRUME_ERR_SCENE);
     EXPECT(s.filter = 2, BRUME_ERR_SCENE);
     EXPECT(s.jitter = 4, BRUME_ERR_SCENE);
-    EXPECT(s.noise = 10, BRUME_ERR_SCENE);
+    EXPECT(s.noise = 11, BRUME_ERR_SCENE);
     EXPECT(s.output = 2, BRUME_ERR_SCENE);
 #undef EXPECT
     tap_check(brume_begin_frame(NULL, v, &good) == BRUME_ERR_NULL &&

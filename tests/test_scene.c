@@ -204,12 +204,18 @@ static void test_sun_and_background(void)
 static const struct {
     const char *key;
     int index;
-    const char *words[5];
+    const char *words[22];
 } k_words[] = {
     {"filter", SCENE_FILTER, {"nearest", "trilinear"}},
     {"light", SCENE_LIGHT, {"log", "uniform", "none"}},
     {"jitter", SCENE_JITTER, {"none", "primary", "light", "both"}},
-    {"noise", SCENE_NOISE, {"none", "white", "ign", "bayer8"}},
+    {"noise",
+     SCENE_NOISE,
+     {"none",        "white",      "ign",        "bayer8",        "bayer4",
+      "bayer16",     "ign-thesis", "rank1",      "white8",        "blue",
+      "blue-slices", "stbn",       "stbn-small", "stbn-tiny",     "fast",
+      "fast-small",  "fast-tiny",  "golden",     "bayer8-golden", "r2",
+      "nrooks"}},
     {"output", SCENE_OUTPUT, {"linear", "srgb"}},
     {"skip", SCENE_SKIP, {"off", "on"}},
 };

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "noises.h"
+
 #define FAR 1e9 /* world coordinates; the pool's own limit comes later */
 #define MAX_Q32 4294967295.0 /* whole part of the core's Q32.32 */
 
@@ -47,7 +49,8 @@ static const struct key k_keys[SCENE_KEYS] = {
      "voxels; log doubles it (1/64 of the box; log: 1)"},
     {"jitter", WORD, 0, 0, "none primary light both",
      "which rays are jittered (primary)"},
-    {"noise", WORD, 0, 0, "none white ign bayer8", "of the jitter (ign)"},
+    {"noise", WORD, 0, 0, noise_words,
+     "or NAME.WxHxT.raw: of the jitter (ign)"},
     {"frame", INTEGER, 0, UINT32_MAX, NULL, "moves the noise (0)"},
     {"background", COLOUR, 0, 1, NULL, "linear grey or r,g,b (0.12,0.25,0.5)"},
     {"output", WORD, 0, 0, "linear srgb", "mapping to 0..255 (srgb)"},
@@ -201,6 +204,21 @@ static int check_text(const char *text, const char *where, char *err,
     return 0;
 }
 
+/* A noise that is a file is read at once, so that what is wrong with it has
+ * its line. */
+static int read_noise(struct scene_settings *settings, const char *path,
+                      const char *where, char *err, size_t err_size)
+{
+    char reason[SCENE_LINE_SIZE];
+    settings->noise_file =
+        noise_is_file(path) ? noise_read(path, reason, sizeof reason) : NULL;
+    if (noise_is_file(path) && settings->noise_file == NULL) {
+        snprintf(err, err_size, "%s: %s", where, reason);
+        return -1;
+    }
+    return 0;
+}
+
 int scene_set(struct scene_settings *settings, const char *text,
               const char *where, char *err, size_t err_size)
 {
@@ -218,7 +236,11 @@ int scene_set(struct scene_settings *settings, const char *text,
     for (int i = 0; i < SCENE_KEYS; i++) {
         if (strcmp(k_keys[i].name, name) != 0)
             continue;
-        if (read_value(&k_keys[i], value, settings->value[i], where, err,
+        if (i == SCENE_NOISE &&
+            read_noise(settings, value, where, err, err_size) != 0)
+            return -1;
+        if ((i != SCENE_NOISE || settings->noise_file == NULL) &&
+            read_value(&k_keys[i], value, settings->value[i], where, err,
                        err_size) != 0)
             return -1;
         settings->set[i] = true;
@@ -437,11 +459,16 @@ static void apply_numbers(const struct scene_settings *s,
     SET(SCENE_LIGHT_SAMPLES, light_samples, (uint16_t));
     SET(SCENE_LIGHT_STEP, light_step, q16);
     SET(SCENE_JITTER, jitter, (uint8_t));
-    SET(SCENE_NOISE, noise, (uint8_t));
     SET(SCENE_FRAME, frame, (uint32_t));
     SET(SCENE_OUTPUT, output, (uint8_t));
     SET(SCENE_SKIP, skip, (bool));
 #undef SET
+    if (s->set[SCENE_NOISE] && s->noise_file == NULL)
+        noise_choose((unsigned)s->value[SCENE_NOISE][0], out);
+    if (s->set[SCENE_NOISE] && s->noise_file != NULL) {
+        out->noise = BRUME_NOISE_TABLE;
+        out->noise_table = s->noise_file;
+    }
     if (s->set[SCENE_SIZE]) {
         out->width = (uint16_t)s->value[SCENE_SIZE][0];
         out->height = (uint16_t)s->value[SCENE_SIZE][1];
@@ -547,7 +574,7 @@ void scene_print(FILE *to, const struct brume_scene *scene,
     fprintf(to, "light_samples = %d\n", s->light_samples);
     fprintf(to, "light_step = %.9g\n", s->light_step / 65536.0);
     print_word(to, SCENE_JITTER, s->jitter);
-    print_word(to, SCENE_NOISE, s->noise);
+    print_word(to, SCENE_NOISE, noise_number(s));
     fprintf(to, "frame = %lu\n", (unsigned long)s->frame);
     fprintf(to, "background = %.9g,%.9g,%.9g\n", s->background[0] / 65536.0,
             s->background[1] / 65536.0, s->background[2] / 65536.0);

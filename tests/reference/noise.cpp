@@ -40,6 +40,13 @@ static uint32_t interleaved_gradient(uint32_t x, uint32_t y, uint32_t moved,
     return (52 * u + static_cast<uint32_t>(fraction)) >> 16;
 }
 
+static uint32_t rank1(uint32_t x, uint32_t y, uint32_t frame, channel c)
+{
+    const uint32_t u = x + (c == light_channel ? 96 : 0);
+    const uint32_t v = y + (c == light_channel ? 72 : 0);
+    return (u * 3436602405U + v * 2850901108U + frame * 1207711862U) / 65536;
+}
+
 // Where the light channel looks, in a tile of that side: moved by the first
 // point of the R2 sequence.
 static uint32_t moved_x(uint32_t x, channel c, uint32_t side)
@@ -112,6 +119,7 @@ uint32_t noise_value(noise kind, uint32_t x, uint32_t y, uint32_t frame,
         return interleaved_gradient(x, y, frame % 64 * 1750839832U, c);
     case noise::ign_thesis:
         return interleaved_gradient(x, y, frame * 722416529U, c);
+    case noise::rank1: return rank1(x, y, frame, c);
     case noise::bayer4: return bayer(x, y, c, 4);
     case noise::bayer8: return bayer(x, y, c, 8);
     case noise::bayer16: return bayer(x, y, c, 16);

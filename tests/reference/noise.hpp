@@ -19,6 +19,7 @@ enum class noise {
     bayer4,
     bayer16,
     ign_thesis,
+    rank1,
     table,
     table_golden,
     table_r2

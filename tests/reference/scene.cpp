@@ -126,9 +126,9 @@ static void set_noise(scene &s, const std::string &v)
         s.noise_values = read_noise_table(v);
         return;
     }
-    s.noise_kind =
-        static_cast<noise>(parse_word(v, {"none", "white", "ign", "bayer8",
-                                          "bayer4", "bayer16", "ign-thesis"}));
+    s.noise_kind = static_cast<noise>(
+        parse_word(v, {"none", "white", "ign", "bayer8", "bayer4", "bayer16",
+                       "ign-thesis", "rank1"}));
 }
 
 // Which scenes must set a key: if_lit is every light but `none`.
@@ -190,7 +190,8 @@ static const scene_key keys[] = {
     {"jitter", "none", need::never, "none | primary | light | both",
      set_jitter},
     {"noise", "none", need::never,
-     "none | white | ign | bayer8 | bayer4 | bayer16 | ign-thesis | FILE.raw",
+     "none | white | ign | bayer8 | bayer4 | bayer16 | ign-thesis | rank1 | "
+     "FILE",
      set_noise},
     {"frame", "0", need::never, "0..4294967295",
      [](scene &s, text v) { s.frame = parse_integer(v, 0, 4294967295.0); }},

@@ -1,12 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "scenes.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include "asset_builder.h"
-
 #define ONE 0x10000u
 #define NEAR BRUME_NEAREST
 #define TRI BRUME_TRILINEAR
@@ -14,6 +8,23 @@
 #define J_PRIM BRUME_JITTER_PRIMARY
 #define J_LIGHT BRUME_JITTER_LIGHT
 #define J_BOTH BRUME_JITTER_BOTH
+
+/* Any values, and so few that a table fits every target. */
+static const uint8_t k_noise[64] = {
+    13,  180, 91,  2,   169, 80,  247, 158, 69,  236, 147, 58,  225,
+    136, 47,  214, 125, 36,  203, 114, 25,  192, 103, 14,  181, 92,
+    3,   170, 81,  248, 159, 70,  237, 148, 59,  226, 137, 48,  215,
+    126, 37,  204, 115, 26,  193, 104, 15,  182, 93,  4,   171, 82,
+    249, 160, 71,  238, 149, 60,  227, 138, 49,  216, 127, 38,
+};
+static const struct brume_noise_table k_noise_table = {k_noise, 3, 3, 1, 4};
+
+/* Of a noise, on a volume that fits everywhere. */
+#define BLOCK(name, noise) \
+    { \
+        name, "block_u8", 160, 120, NEAR, BRUME_LOG, 6, J_BOTH, noise, \
+            2 * ONE, 5, VIEW_FRONT, false, false \
+    }
 
 const struct test_scene test_scenes[] = {
     /* name, volume, size, lookup, light, n, jitter, noise, step, frame, view,
@@ -70,107 +81,35 @@ const struct test_scene test_scenes[] = {
      BRUME_NOISE_WHITE, ONE, 0, VIEW_FRONT, false, false},
     {"smoke_u4r", "smoke_u4r", 320, 240, NEAR, BRUME_LOG, 10, J_NONE, 0, ONE, 0,
      VIEW_FRONT, false, false},
+    /* For targets, where the largest frames are too slow: */
+    {"disney_160", "wdas_u8", 160, 120, NEAR, BRUME_LOG, 10, J_NONE, 0, ONE, 0,
+     VIEW_FRONT, false, false},
+    {"disney_160_unlit", "wdas_u8", 160, 120, NEAR, BRUME_NO_LIGHT, 0, J_NONE,
+     0, ONE, 0, VIEW_FRONT, false, false},
+    {"disney_320", "wdas_u8", 320, 240, NEAR, BRUME_LOG, 10, J_NONE, 0, ONE, 0,
+     VIEW_FRONT, false, false},
+    {"disney_u4r", "wdas_u4r", 160, 120, NEAR, BRUME_LOG, 10, J_NONE, 0, ONE, 0,
+     VIEW_FRONT, false, false},
+    {"disney_u4r_unlit", "wdas_u4r", 160, 120, NEAR, BRUME_NO_LIGHT, 0, J_NONE,
+     0, ONE, 0, VIEW_FRONT, false, false},
+    {"disney_lod1", "wdas1_u8", 160, 120, NEAR, BRUME_LOG, 10, J_NONE, 0, ONE,
+     0, VIEW_FRONT, false, false},
+    {"disney_lod1_unlit", "wdas1_u8", 160, 120, NEAR, BRUME_NO_LIGHT, 0, J_NONE,
+     0, ONE, 0, VIEW_FRONT, false, false},
+    BLOCK("block_none", BRUME_NOISE_NONE),
+    BLOCK("block_white", BRUME_NOISE_WHITE),
+    BLOCK("block_ign", BRUME_NOISE_IGN),
+    BLOCK("block_bayer8", BRUME_NOISE_BAYER8),
+    BLOCK("block_bayer4", BRUME_NOISE_BAYER4),
+    BLOCK("block_bayer16", BRUME_NOISE_BAYER16),
+    BLOCK("block_ign_thesis", BRUME_NOISE_IGN_THESIS),
+    BLOCK("block_rank1", BRUME_NOISE_RANK1),
+    BLOCK("block_table", BRUME_NOISE_TABLE),
+    BLOCK("block_table_golden", BRUME_NOISE_TABLE_GOLDEN),
+    BLOCK("block_table_r2", BRUME_NOISE_TABLE_R2),
 };
 
 const int test_scene_count = sizeof test_scenes / sizeof test_scenes[0];
-
-/// Volumes ///
-
-static int add_volume(struct test_volumes *v, const char *name, uint8_t *asset,
-                      size_t size)
-{
-    struct test_volume *item = &v->item[v->count];
-    if (v->count == TEST_VOLUMES || strlen(name) >= sizeof item->name) {
-        fprintf(stderr, "too many volumes, or a long name: %s\n", name);
-        free(asset);
-        return -1;
-    }
-    v->count++;
-    item->asset = asset;
-    strcpy(item->name, name);
-    int error = brume_volume_open(&item->volume, asset, size, 0);
-    if (error)
-        fprintf(stderr, "%s: %s\n", name, brume_error_text(error));
-    return error ? -1 : 0;
-}
-
-static int add_cloud(struct test_volumes *v, const char *name, int format,
-                     bool apron)
-{
-    static const struct density_cloud cloud = {72, 5};
-    struct asset_spec spec =
-        asset_spec_of(9, 9, 9, format, density_in_cloud, &cloud);
-    size_t size;
-    spec.apron = apron;
-    uint8_t *asset = asset_build(&spec, &size);
-    return add_volume(v, name, asset, size);
-}
-
-static int add_block(struct test_volumes *v)
-{
-    static const struct density_box box = {{4, 4, 4}, {28, 20, 36}, 32768};
-    struct asset_spec spec =
-        asset_spec_of(4, 3, 5, BRUME_U8, density_in_box, &box);
-    size_t size;
-    uint8_t *asset = asset_build(&spec, &size);
-    return add_volume(v, "block_u8", asset, size);
-}
-
-static int add_file(struct test_volumes *v, const char *argument)
-{
-    char name[24] = "";
-    const char *path = strchr(argument, '=');
-    if (path != NULL && (size_t)(path - argument) < sizeof name)
-        memcpy(name, argument, (size_t)(path - argument));
-    FILE *f = path ? fopen(path + 1, "rb") : NULL;
-    long size = -1;
-    if (f != NULL && fseek(f, 0, SEEK_END) == 0)
-        size = ftell(f);
-    uint8_t *asset = size > 0 ? malloc((size_t)size) : NULL;
-    if (asset == NULL || fseek(f, 0, SEEK_SET) != 0 ||
-        fread(asset, 1, (size_t)size, f) != (size_t)size) {
-        fprintf(stderr, "cannot read name=path %s\n", argument);
-        free(asset);
-        if (f != NULL)
-            fclose(f);
-        return -1;
-    }
-    fclose(f);
-    return add_volume(v, name, asset, (size_t)size);
-}
-
-int test_volumes_make(struct test_volumes *volumes, int argc, char **argv)
-{
-    struct test_volumes *v = volumes;
-    memset(v, 0, sizeof *v);
-    int bad = add_block(v);
-    bad |= add_cloud(v, "cloud_u8", BRUME_U8, false);
-    bad |= add_cloud(v, "cloud_u8_apron", BRUME_U8, true);
-    bad |= add_cloud(v, "cloud_u8r", BRUME_U8R, false);
-    bad |= add_cloud(v, "cloud_u8r_apron", BRUME_U8R, true);
-    bad |= add_cloud(v, "cloud_u4r", BRUME_U4R, false);
-    bad |= add_cloud(v, "cloud_u4r_apron", BRUME_U4R, true);
-    for (int i = 1; i < argc; i++)
-        bad |= add_file(v, argv[i]);
-    return bad;
-}
-
-void test_volumes_free(struct test_volumes *volumes)
-{
-    for (int i = 0; i < volumes->count; i++)
-        free(volumes->item[i].asset);
-}
-
-const struct brume_volume *test_volume_of(const struct test_volumes *volumes,
-                                          const struct test_scene *scene)
-{
-    for (int i = 0; i < volumes->count; i++)
-        if (strcmp(volumes->item[i].name, scene->volume) == 0)
-            return &volumes->item[i].volume;
-    return NULL;
-}
-
-/// Scenes ///
 
 /* Eye and target from the box; in the box's own size. */
 static void place_camera(struct brume_scene *s, int view,
@@ -238,18 +177,24 @@ void test_scene_fill(struct brume_scene *out, const struct test_scene *scene,
     s->light = scene->light;
     s->jitter = scene->jitter;
     s->noise = scene->noise;
+    s->noise_table = &k_noise_table;
     s->output = BRUME_SRGB;
     s->skip = true;
 }
 
-uint32_t test_crc32(const void *data, size_t size)
+uint32_t test_crc32_more(uint32_t crc, const void *data, size_t size)
 {
     const uint8_t *p = data;
-    uint32_t crc = 0xffffffffu;
+    crc = ~crc;
     for (size_t i = 0; i < size; i++) {
         crc ^= p[i];
         for (int k = 0; k < 8; k++)
             crc = crc >> 1 ^ (0xedb88320u & (0u - (crc & 1u)));
     }
     return ~crc;
+}
+
+uint32_t test_crc32(const void *data, size_t size)
+{
+    return test_crc32_more(0, data, size);
 }

@@ -3,7 +3,7 @@
  * The scenes that tests render over and over: of every kernel a few, on
  * volumes made here, and on real ones when their baked files are given. The
  * same list serves the golden hashes, tilings, threads, compilers and targets.
- * Needs the core alone.
+ * Needs the core alone: no libc, so targets compile it too (volumes.h does).
  */
 #ifndef BRUME_TESTS_SCENES_H
 #define BRUME_TESTS_SCENES_H
@@ -36,27 +36,6 @@ enum test_view {
 extern const struct test_scene test_scenes[];
 extern const int test_scene_count;
 
-/* The volumes of test scenes. They live until test_volumes_free. */
-struct test_volume {
-    char name[24];
-    uint8_t *asset;
-    struct brume_volume volume;
-};
-#define TEST_VOLUMES 16
-struct test_volumes {
-    int count;
-    struct test_volume item[TEST_VOLUMES];
-};
-
-/* Makes the synthetic volumes, and opens `name=path` arguments. Prints what
- * is wrong and returns -1 when one of them cannot be had. */
-int test_volumes_make(struct test_volumes *volumes, int argc, char **argv);
-void test_volumes_free(struct test_volumes *volumes);
-
-/* The volume of a scene, or NULL. */
-const struct brume_volume *test_volume_of(const struct test_volumes *volumes,
-                                          const struct test_scene *scene);
-
 /* The core's scene of a test scene. Every field is set here, none left to the
  * core's defaults. */
 void test_scene_fill(struct brume_scene *out, const struct test_scene *scene,
@@ -64,5 +43,8 @@ void test_scene_fill(struct brume_scene *out, const struct test_scene *scene,
 
 /* CRC-32 of bytes, from 0. */
 uint32_t test_crc32(const void *data, size_t size);
+
+/* The same of bytes that follow those of `crc`. */
+uint32_t test_crc32_more(uint32_t crc, const void *data, size_t size);
 
 #endif
