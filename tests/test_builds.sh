@@ -9,7 +9,7 @@ set -eu
 out=$BUILD/builds
 mkdir -p "$out"
 files="core/*.c tests/support/asset_builder.c tests/support/scenes.c
-    tests/hash_scenes.c"
+    tests/support/volumes.c tests/hash_scenes.c"
 
 # build NAME COMPILER FLAGS...: the hashes go to $out/NAME.txt.
 build()
@@ -45,8 +45,6 @@ try()
 }
 
 sanitize="-g -fsanitize=address,undefined -fno-sanitize-recover=all"
-lean="-DBRUME_WITH_TRILINEAR=0 -DBRUME_WITH_UNIFORM=0 -DBRUME_WITH_APRON=0
-    -DBRUME_WITH_U4R=0 -DBRUME_WITH_MAX_DENSITY=0"
 try gcc_O0 22 gcc -O0
 try gcc_Os 22 gcc -Os
 try gcc_O3_native 22 gcc -O3 -march=native
@@ -59,8 +57,6 @@ try clang_O0 22 clang -O0
 try clang_O3 22 clang -O3
 # shellcheck disable=SC2086
 try clang_sanitizers 22 clang -O1 $sanitize -DBRUME_FIXED_DEBUG
-# shellcheck disable=SC2086
-try gcc_lean 10 gcc -Os $lean
 
 # Truncated, flipped and forged assets, where a bad access would trap.
 hostile_assets()
@@ -73,6 +69,18 @@ hostile_assets()
 }
 check "hostile assets under ASan and UBSan" hostile_assets
 
-try gcc_trilinear_only 7 gcc -O2 -DBRUME_WITH_NEAREST=0
-try gcc_u4r_only 3 gcc -O2 -DBRUME_WITH_U8=0 -DBRUME_WITH_U8R=0
+# The configurations that docs/TARGETS.md offers: the scenes that each supports,
+# at least so many.
+for config in smallest=20 u4r_nearest=2 u8r_trilinear=4 preview=23 full=32; do
+    try "config_${config%=*}" "${config#*=}" gcc -Os \
+        -DBRUME_CONFIG="\"targets/configs/${config%=*}.h\""
+done
+every_configuration_is_tried()
+{
+    for header in tests/targets/configs/*.h; do
+        [ -f "$out/config_$(basename "$header" .h).txt" ] || return 1
+    done
+}
+check "every header of tests/targets/configs is tried" \
+    every_configuration_is_tried
 finish

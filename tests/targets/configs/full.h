@@ -1,0 +1,2 @@
+/* SPDX-License-Identifier: MIT */
+/* Everything, as without a configuration. */
