@@ -33,7 +33,7 @@ TABLE_OBJ = $(patsubst %.c,$(BUILD)/%.o,$(wildcard tables/noise_*.c) \
 	tables/nrooks.c)
 NOISE_OBJ = $(patsubst %.c,$(BUILD)/%.o,\
 	$(filter-out %_main.c,$(wildcard tables/noise/*.c)))
-HOST_OBJ = $(patsubst platform/%.c,$(BUILD)/%.o,$(HOST_SRC)) $(TABLE_OBJ)
+HOST_OBJ = $(patsubst platform/%.c,$(BUILD)/%.o,$(HOST_SRC))
 CONVERT_OBJ = $(patsubst convert/%.cpp,$(BUILD)/convert/%.o,\
 	$(filter-out %_main.cpp,$(wildcard convert/*.cpp)))
 REFERENCE_OBJ = $(patsubst tests/%.cpp,$(BUILD)/tests/%.o,\
@@ -91,7 +91,8 @@ install: $(PROGRAMS) $(BUILD)/libbrume.a ## to PREFIX
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include \
 		$(DESTDIR)$(PREFIX)/lib
 	install $(PROGRAMS) $(DESTDIR)$(PREFIX)/bin
-	install -m 644 core/brume.h $(DESTDIR)$(PREFIX)/include
+	install -m 644 core/brume.h tables/brume_noise_tables.h \
+		$(DESTDIR)$(PREFIX)/include
 	install -m 644 $(BUILD)/libbrume.a $(DESTDIR)$(PREFIX)/lib
 
 clean: ## remove what was built
@@ -105,7 +106,7 @@ help: ## this list
 $(BUILD)/brume: $(HOST_OBJ) $(BUILD)/libbrume.a
 	$(CC) $(LDFLAGS) -o $@ $^ -lm -lpthread
 
-$(BUILD)/libbrume.a: $(CORE_OBJ)
+$(BUILD)/libbrume.a: $(CORE_OBJ) $(TABLE_OBJ)
 	rm -f $@
 	$(AR) rcs $@ $^
 
@@ -155,7 +156,8 @@ $(BUILD)/core/%.o: core/%.c
 
 $(BUILD)/tables/noise/%.o: tables/noise/%.c
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) -Iplatform/host $(HOST_FLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
+	$(CC) $(CPPFLAGS) -Iplatform/host $(HOST_FLAGS) $(CFLAGS) \
+		-MMD -MP -c -o $@ $<
 
 $(BUILD)/tables/%.o: tables/%.c
 	@mkdir -p $(@D)
@@ -176,8 +178,8 @@ $(BUILD)/tests/%.o: tests/%.cpp
 
 $(BUILD)/tests/%.o: tests/%.c
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) -Itests -Itables/noise -Iplatform/host $(HOST_FLAGS) $(CFLAGS) \
-		-MMD -MP -c -o $@ $<
+	$(CC) $(CPPFLAGS) -Itests -Itables/noise -Iplatform/host $(HOST_FLAGS) \
+		$(CFLAGS) -MMD -MP -c -o $@ $<
 
 .SECONDARY:
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

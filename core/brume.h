@@ -21,7 +21,9 @@
  *   Q32.32 uint64_t  densities and extinction per unit density per voxel
  *
  * Memory   The caller owns all of it. The library has no heap, no writable
- *          statics, no recursion, and needs less than 1 KiB of stack.
+ *          statics, no recursion, and needs less than 1 KiB of stack on
+ *          32-bit processors, 1.5 KiB on others (optimised builds; the
+ *          bound of each target is in docs/TARGETS.md).
  *          Structs may be copied; they point only at the asset (brume_volume),
  *          at the volume and at a noise table's values (brume_frame).
  * Threads  Functions that take pointers to const may run at the same time:
@@ -54,9 +56,9 @@ extern "C" {
 
 /// Compile-time choices ///
 
-/* What is compiled in, 1 or 0. Each costs code only: about 0.9 KiB of
- * Thumb-2 per combination of format, apron, lookup, light and clamp; nearest
- * lookup of one format with log light takes 1.4 KiB, all together 42 KiB. A
+/* What is compiled in, 1 or 0. Each costs code only: about 1 KiB of Thumb-2
+ * (-Os) per combination of format, apron, lookup, light and clamp; nearest
+ * lookup of one format with log light takes 1.7 KiB, all together 48 KiB. A
  * scene that asks for what is missing gets BRUME_ERR_FEATURE; what it does
  * render is the same image as with everything compiled in. */
 #ifndef BRUME_WITH_U8

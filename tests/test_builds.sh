@@ -49,6 +49,7 @@ try gcc_O0 22 gcc -O0
 try gcc_Os 22 gcc -Os
 try gcc_O3_native 22 gcc -O3 -march=native
 try gcc_unsigned_char 22 gcc -O2 -funsigned-char -fwrapv
+try gcc_unrolled 22 gcc -O2 -DBRUME_UNROLL_LIGHT=1
 try gcc_mul32 22 gcc -O2 -DBRUME_MUL64=0 -DBRUME_CLZ=0
 # shellcheck disable=SC2086
 try gcc_sanitizers 22 gcc -O1 $sanitize

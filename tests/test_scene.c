@@ -5,6 +5,8 @@
  */
 #include "tap.h"
 
+#include "brume_inner.h"
+#include "noises.h"
 #include "scene_file.h"
 #include "support/asset_builder.h"
 
@@ -199,6 +201,34 @@ static void test_sun_and_background(void)
                   refuses("background = 1.001", 1, "outside 0 to 1") &&
                   refuses("background = 0,0,-0.001", 1, "outside 0 to 1"),
               "background: not two, not four, 0 to 1");
+}
+
+/* Tables that the program makes of others. */
+static void test_made_noises(void)
+{
+    struct scene_settings set;
+    struct brume_scene s;
+    int wrong = 0, uneven = 0, histogram[256] = {0};
+    memset(&set, 0, sizeof set);
+    scene_set(&set, "noise = bayer8-golden", "test", err, sizeof err);
+    noise_choose((unsigned)set.value[SCENE_NOISE][0], &s);
+    for (uint32_t i = 0; i < 1024; i++) {
+        uint32_t x = i % 32, y = i / 32;
+        uint32_t j = brume_noise_value(s.noise, s.noise_table, x, y, 0, 0);
+        uint32_t k = brume_noise_value(BRUME_NOISE_BAYER8, NULL, x, y, 0, 0);
+        wrong += j >> 8 != k >> 8;
+    }
+    tap_check(wrong == 0, "bayer8-golden: frame 0 is bayer8, to 8 bits");
+    scene_set(&set, "noise = nrooks", "test", err, sizeof err);
+    noise_choose((unsigned)set.value[SCENE_NOISE][0], &s);
+    for (uint32_t i = 0; i < 4096; i++) {
+        uint32_t x = i % 64, y = i / 64;
+        histogram[brume_noise_value(s.noise, s.noise_table, x, y, 7, 0) >> 8]++;
+    }
+    for (int i = 0; i < 256; i++)
+        uneven += histogram[i] != 16;
+    tap_check(uneven == 0 && s.noise_table->frames_log2 == 4,
+              "nrooks: 16 frames, each with every value 16 times");
 }
 
 static const struct {
@@ -911,6 +941,7 @@ int main(void)
     test_size();
     test_vectors();
     test_sun_and_background();
+    test_made_noises();
     test_words();
     test_bad_numbers();
     test_lines();
