@@ -117,7 +117,8 @@ static void default_light(struct brume_scene *s, uint32_t diagonal)
 {
     if (BRUME_WITH_UNIFORM) {
         s->light = BRUME_UNIFORM;
-        s->light_samples = 64;
+        s->light_samples =
+            BRUME_MAX_UNIFORM_SAMPLES < 64 ? BRUME_MAX_UNIFORM_SAMPLES : 64;
         s->light_step = diagonal << 10; /* 2^26 at most */
         if (s->light_step < BRUME_MIN_STEP)
             s->light_step = BRUME_MIN_STEP;
@@ -127,7 +128,8 @@ static void default_light(struct brume_scene *s, uint32_t diagonal)
     }
     s->light = BRUME_LOG;
     s->light_step = 0x10000u;
-    for (s->light_samples = 1; 1u << s->light_samples < diagonal;)
+    for (s->light_samples = 1; s->light_samples < BRUME_MAX_LOG_SAMPLES &&
+                               1u << s->light_samples < diagonal;)
         s->light_samples++;
 }
 
@@ -138,8 +140,8 @@ void brume_scene_default(struct brume_scene *scene,
     uint32_t diagonal = diagonal_of(volume);
     struct brume_scene *s = scene;
     *s = k_zero;
-    s->width = 640;
-    s->height = 480;
+    s->width = BRUME_MAX_SIZE < 640 ? BRUME_MAX_SIZE : 640;
+    s->height = BRUME_MAX_SIZE < 480 ? BRUME_MAX_SIZE : 480;
     default_camera(s, volume);
     brume_direction(s->sun, -60 * 65536, 30 << 16);
     s->density_scale = default_scale(volume, 16, diagonal);
@@ -151,7 +153,7 @@ void brume_scene_default(struct brume_scene *scene,
     default_light(s, diagonal);
     s->min_transmittance = 655;
     s->filter = BRUME_WITH_TRILINEAR ? BRUME_TRILINEAR : BRUME_NEAREST;
-    s->jitter = BRUME_JITTER_PRIMARY;
+    s->jitter = BRUME_WITH_NOISE ? BRUME_JITTER_PRIMARY : BRUME_JITTER_NONE;
     s->noise = BRUME_NOISE_IGN;
     s->background[0] = 7864; /* 0.12, 0.25, 0.5: a clear sky */
     s->background[1] = 16384;
@@ -182,6 +184,8 @@ static int check_scene(const struct brume_scene *s)
     for (int c = 0; c < 3; c++)
         if (s->background[c] > 0x10000u)
             return BRUME_ERR_SCENE;
+    if (!BRUME_WITH_NOISE && s->jitter != 0 && s->noise != BRUME_NOISE_NONE)
+        return BRUME_ERR_FEATURE;
     return BRUME_OK;
 }
 
@@ -241,6 +245,9 @@ int brume_render_rect(const struct brume_frame *frame, unsigned x, unsigned y,
         y > frame->height || h > frame->height - y ||
         (h > 1 && stride < (size_t)w * bytes))
         return BRUME_ERR_RECT;
+    if (!BRUME_WITH_RGB && pixel_format != BRUME_L8 &&
+        pixel_format != BRUME_L16)
+        return BRUME_ERR_FEATURE;
     for (unsigned j = 0; j < h; j++) {
         uint8_t *to = (uint8_t *)dst + j * stride;
         for (unsigned i = 0; i < w; i += BRUME_SPAN) {

@@ -85,6 +85,19 @@ extern "C" {
 #ifndef BRUME_WITH_MAX_DENSITY /* max_density below the asset's maximum */
 #define BRUME_WITH_MAX_DENSITY 1
 #endif
+#ifndef BRUME_WITH_RGB /* pixel formats with colour; 0.4 KiB */
+#define BRUME_WITH_RGB 1
+#endif
+#ifndef BRUME_WITH_NOISE /* jitter; 0.6 KiB */
+#define BRUME_WITH_NOISE 1
+#endif
+
+#if !(BRUME_WITH_U8 || BRUME_WITH_U8R || BRUME_WITH_U4R)
+#error "brume: no format: set BRUME_WITH_U8, BRUME_WITH_U8R or BRUME_WITH_U4R"
+#endif
+#if !(BRUME_WITH_NEAREST || BRUME_WITH_TRILINEAR)
+#error "brume: no lookup: set BRUME_WITH_NEAREST or BRUME_WITH_TRILINEAR"
+#endif
 
 /* Light samples written out one by one: 1.8 KiB more per kernel with log
  * light, and an eighth fewer instructions on Cortex-M3 and above, where a
@@ -99,9 +112,34 @@ extern "C" {
 
 /// Limits ///
 
-#define BRUME_MAX_SIZE 16384     /* pixels per side of a frame */
-#define BRUME_MAX_LOG_SAMPLES 16 /* light samples of doubling distance */
+/* These may be lowered. */
+#ifndef BRUME_MAX_SIZE /* pixels per side of a frame, 1 .. 16384 */
+#define BRUME_MAX_SIZE 16384
+#endif
+#ifndef BRUME_MAX_LOG_SAMPLES /* light samples, doubling distance, 1 .. 16 */
+#define BRUME_MAX_LOG_SAMPLES 16
+#endif
+#ifndef BRUME_MAX_UNIFORM_SAMPLES /* the same, equal distance, 1 .. 4096 */
 #define BRUME_MAX_UNIFORM_SAMPLES 4096
+#endif
+/* Pixels that are marched before they are packed, 1 .. 64: 8 bytes of stack
+ * each. Below 8 it costs time. */
+#ifndef BRUME_SPAN
+#define BRUME_SPAN 32
+#endif
+#if BRUME_MAX_SIZE < 1 || BRUME_MAX_SIZE > 16384
+#error "brume: BRUME_MAX_SIZE is 1 .. 16384"
+#endif
+#if BRUME_MAX_LOG_SAMPLES < 1 || BRUME_MAX_LOG_SAMPLES > 16
+#error "brume: BRUME_MAX_LOG_SAMPLES is 1 .. 16"
+#endif
+#if BRUME_MAX_UNIFORM_SAMPLES < 1 || BRUME_MAX_UNIFORM_SAMPLES > 4096
+#error "brume: BRUME_MAX_UNIFORM_SAMPLES is 1 .. 4096"
+#endif
+#if BRUME_SPAN < 1 || BRUME_SPAN > 64
+#error "brume: BRUME_SPAN is 1 .. 64"
+#endif
+/* These may not. */
 #define BRUME_MIN_STEP 0x00001000u /* 1/16 voxel, Q16.16 */
 #define BRUME_MAX_STEP 0x01000000u /* 256 voxels, Q16.16 */
 #define BRUME_MIN_FOV 0x00010000u  /* 1 degree, Q16.16 */
@@ -394,8 +432,8 @@ unsigned brume_pixel_bytes(int pixel_format);
  * is pixel (x, y) and whose rows are `stride` bytes apart. dst must be aligned
  * for the format's word. Any cutting of a frame into rectangles gives the same
  * pixels. L8 and L16 take the background's red. Returns BRUME_OK (also for
- * empty rectangles), BRUME_ERR_NULL or BRUME_ERR_RECT; then dst is untouched.
- */
+ * empty rectangles), BRUME_ERR_NULL, BRUME_ERR_RECT, or BRUME_ERR_FEATURE for
+ * a pixel format that was compiled out; then dst is untouched. */
 int brume_render_rect(const struct brume_frame *frame, unsigned x, unsigned y,
                       unsigned w, unsigned h, int pixel_format, void *dst,
                       size_t stride);

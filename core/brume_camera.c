@@ -330,7 +330,7 @@ void brume_light_begin(struct brume_light_ray *light,
 static uint32_t jitter_of(const struct brume_frame *f, uint32_t x, uint32_t y,
                           uint32_t channel)
 {
-    return f->jitter >> channel & 1u
+    return BRUME_WITH_NOISE && (f->jitter >> channel & 1u)
                ? brume_noise_value(f->noise, &f->noise_table, x, y, f->frame,
                                    channel)
                : 0;
@@ -369,7 +369,7 @@ bool brume_ray_begin(struct brume_ray *ray, const struct brume_frame *frame,
         for (int i = 0; i < 3; i++)
             ray->line.inverse[i] = 0;
     ray->light = f->light;
-    if (f->jitter & BRUME_JITTER_LIGHT)
+    if (BRUME_WITH_NOISE && (f->jitter & BRUME_JITTER_LIGHT))
         brume_light_begin(&ray->light, f, jitter_of(f, x, y, 1));
     return true;
 }

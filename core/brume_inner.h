@@ -102,9 +102,6 @@ uint32_t brume_inverse_of_move(int32_t move);
 
 /// brume_march.c ///
 
-/* Pixels that are rendered before they are packed. */
-#define BRUME_SPAN 32
-
 /* Radiance of the volume and transmittance to the background. */
 struct brume_radiance {
     uint32_t light;         /* Q16.16, albedo applied, 1.0 = the sun's */

@@ -104,6 +104,8 @@ uint32_t brume_noise_value(int noise, const struct brume_noise_table *values,
                            uint32_t x, uint32_t y, uint32_t frame,
                            uint32_t channel)
 {
+    if (!BRUME_WITH_NOISE)
+        return 0;
     switch (noise) {
     case BRUME_NOISE_WHITE: return white(x, y, frame, channel);
     /* 5.588238 per frame on both axes, for 64 frames */

@@ -134,17 +134,27 @@ static void pack_16(const struct brume_frame *f,
             *dst++ = (uint16_t)code16(f, composed(f, &in[i], c));
 }
 
-void brume_pack_span(const struct brume_frame *frame,
+static void pack_rgb(const struct brume_frame *f,
                      const struct brume_radiance *in, uint32_t n,
                      int pixel_format, void *dst)
 {
     switch (pixel_format) {
-    case BRUME_L8: pack_l8(frame, in, n, dst); break;
-    case BRUME_RGB888: pack_rgb888(frame, in, n, dst); break;
-    case BRUME_RGB565: pack_rgb565(frame, in, n, dst, false); break;
-    case BRUME_RGB565_SWAPPED: pack_rgb565(frame, in, n, dst, true); break;
-    case BRUME_XRGB8888: pack_xrgb8888(frame, in, n, dst); break;
-    case BRUME_L16: pack_16(frame, in, n, dst, 1); break;
-    default: pack_16(frame, in, n, dst, 3); break;
+    case BRUME_RGB888: pack_rgb888(f, in, n, dst); break;
+    case BRUME_RGB565: pack_rgb565(f, in, n, dst, false); break;
+    case BRUME_RGB565_SWAPPED: pack_rgb565(f, in, n, dst, true); break;
+    case BRUME_XRGB8888: pack_xrgb8888(f, in, n, dst); break;
+    default: pack_16(f, in, n, dst, 3); break;
     }
+}
+
+void brume_pack_span(const struct brume_frame *frame,
+                     const struct brume_radiance *in, uint32_t n,
+                     int pixel_format, void *dst)
+{
+    if (pixel_format == BRUME_L8)
+        pack_l8(frame, in, n, dst);
+    else if (pixel_format == BRUME_L16)
+        pack_16(frame, in, n, dst, 1);
+    else if (BRUME_WITH_RGB)
+        pack_rgb(frame, in, n, pixel_format, dst);
 }

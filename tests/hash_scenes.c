@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * hash_scenes [VOLUME=FILE.brume]...: a line per test scene, its name and the
- * CRC-32 of its RGB888 pixels; `feature` when the core was compiled without
- * what it needs, `absent` when its volume was not given. Compiled by itself
- * with the core, by every compiler and for every target.
+ * hash_scenes [--grey] [VOLUME=FILE.brume]...: a line per test scene, its name
+ * and the CRC-32 of its RGB888 (or L8) pixels; `feature` when the core was
+ * compiled without what it needs, `absent` when its volume was not given.
+ * Compiled by itself with the core, by every compiler and for every target.
  *
  * hash_scenes --write DIR: the volumes made here as DIR/NAME.brume, for targets
  * that have no heap to make them in.
@@ -14,8 +14,25 @@
 
 #include "support/volumes.h"
 
+/* The pixels of a frame, or NULL and *error. */
+static uint8_t *rendered(const struct brume_frame *frame, int format,
+                         size_t *size, int *error)
+{
+    size_t stride = (size_t)frame->width * (format == BRUME_L8 ? 1 : 3);
+    *size = stride * frame->height;
+    uint8_t *pixels = malloc(*size);
+    if (pixels == NULL)
+        abort();
+    *error = brume_render_rect(frame, 0, 0, frame->width, frame->height, format,
+                               pixels, stride);
+    if (*error == BRUME_OK)
+        return pixels;
+    free(pixels);
+    return NULL;
+}
+
 static void print_scene(const struct test_volumes *volumes,
-                        const struct test_scene *t)
+                        const struct test_scene *t, int format)
 {
     const struct brume_volume *v = test_volume_of(volumes, t);
     static struct brume_frame frame;
@@ -25,21 +42,21 @@ static void print_scene(const struct test_volumes *volumes,
         return;
     }
     test_scene_fill(&scene, t, v);
+    size_t size = 0;
+    uint8_t *pixels = NULL;
     int error = brume_begin_frame(&frame, v, &scene);
-    if (error) {
+    if (!error)
+        pixels = rendered(&frame, format, &size, &error);
+    /* A configuration may allow only small frames or few samples. */
+    bool feature = error == BRUME_ERR_FEATURE ||
+                   (error == BRUME_ERR_SIZE && t->width > BRUME_MAX_SIZE) ||
+                   (error == BRUME_ERR_SAMPLES &&
+                    t->light_samples > BRUME_MAX_LOG_SAMPLES);
+    if (error)
         printf("%s %s\n", t->name,
-               error == BRUME_ERR_FEATURE ? "feature"
-                                          : brume_error_text(error));
-        return;
-    }
-    size_t stride = (size_t)t->width * 3;
-    uint8_t *pixels = malloc(stride * t->height);
-    if (pixels == NULL ||
-        brume_render_rect(&frame, 0, 0, t->width, t->height, BRUME_RGB888,
-                          pixels, stride) != BRUME_OK)
-        abort();
-    printf("%s %08lx\n", t->name,
-           (unsigned long)test_crc32(pixels, stride * t->height));
+               feature ? "feature" : brume_error_text(error));
+    else
+        printf("%s %08lx\n", t->name, (unsigned long)test_crc32(pixels, size));
     free(pixels);
 }
 
@@ -64,11 +81,12 @@ int main(int argc, char **argv)
 {
     struct test_volumes volumes;
     bool writes = argc == 3 && strcmp(argv[1], "--write") == 0;
+    int grey = argc > 1 && strcmp(argv[1], "--grey") == 0;
     int status = 0;
-    if (test_volumes_make(&volumes, writes ? 1 : argc, argv) != 0)
+    if (test_volumes_make(&volumes, writes ? 1 : argc - grey, argv + grey) != 0)
         return 1;
     for (int i = 0; !writes && i < test_scene_count; i++)
-        print_scene(&volumes, &test_scenes[i]);
+        print_scene(&volumes, &test_scenes[i], grey ? BRUME_L8 : BRUME_RGB888);
     if (writes)
         status = write_volumes(&volumes, argv[2]);
     test_volumes_free(&volumes);

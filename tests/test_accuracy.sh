@@ -146,6 +146,10 @@ for filter in nearest trilinear; do
     done
 done
 compare_all wdas "wdas_u8 wdas_u8r" nearest log both bayer8
+compare_all wdas "wdas_u8" nearest log both rank1
+# A table: the reference reads the file, the core gets it from the program.
+"$BUILD/brume-noise" fast --size 32x32x16 -o "$out/fast.32x32x16.raw"
+compare_all wdas "wdas_u8" trilinear log both "$out/fast.32x32x16.raw"
 # max_density at rendering clamps voxels, before interpolation.
 compare_all smoke "smoke_u8r" trilinear log none none "max_density = 1"
 compare_all smoke "smoke_u8r" nearest uniform none none "max_density = 0.5"

@@ -10,22 +10,7 @@ work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 trap 'exit 1' HUP INT TERM
 bake=$BUILD/brume-bake
-passed=0 failed=0 skipped=0
-
-number() { echo $((passed + failed + skipped + 1)); }
-ok() { echo "ok $(number) - $1"; passed=$((passed + 1)); }
-not_ok() { echo "not ok $(number) - $1"; failed=$((failed + 1)); }
-skip() { echo "ok $(number) # SKIP $1"; skipped=$((skipped + 1)); }
-
-# check TEXT COMMAND...: the command succeeds
-check() {
-    text=$1
-    shift
-    if "$@" >"$work/log" 2>&1; then ok "$text"; else
-        not_ok "$text"
-        sed 's/^/# /' "$work/log"
-    fi
-}
+. tests/bake_lib.sh
 
 # refused TEXT STATUS PATTERN ARGUMENT...: brume-bake ends with that status,
 # says PATTERN in its first line on stderr that is not a notice, the only one

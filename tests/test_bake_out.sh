@@ -14,22 +14,7 @@ trap 'exit 1' HUP INT TERM
 case $BUILD in /*) ;; *) BUILD=$PWD/$BUILD ;; esac
 case $DATA in /*) ;; *) DATA=$PWD/$DATA ;; esac
 bake=$BUILD/brume-bake
-passed=0 failed=0 skipped=0
-
-number() { echo $((passed + failed + skipped + 1)); }
-ok() { echo "ok $(number) - $1"; passed=$((passed + 1)); }
-not_ok() { echo "not ok $(number) - $1"; failed=$((failed + 1)); }
-skip() { echo "ok $(number) # SKIP $1"; skipped=$((skipped + 1)); }
-
-# check TEXT COMMAND...: the command succeeds
-check() {
-    text=$1
-    shift
-    if "$@" >"$work/log" 2>&1; then ok "$text"; else
-        not_ok "$text"
-        sed 's/^/# /' "$work/log"
-    fi
-}
+. tests/bake_lib.sh
 
 # refused TEXT STATUS PATTERN FILE ARGUMENT...: brume-bake -o FILE in an empty
 # folder ends with that status and one line that holds PATTERN, and leaves

@@ -76,6 +76,39 @@ for config in smallest=20 u4r_nearest=2 u8r_trilinear=4 preview=23 full=32; do
     try "config_${config%=*}" "${config#*=}" gcc -Os \
         -DBRUME_CONFIG="\"targets/configs/${config%=*}.h\""
 done
+
+# mono.h has no colour: grey pixels, against those of the full configuration.
+build config_mono gcc -Os -DBRUME_CONFIG='"targets/configs/mono.h"' ||
+    cat "$out/config_mono.log"
+same_greys()
+{
+    # shellcheck disable=SC2086
+    "./$out/config_full" --grey $volumes >"$out/greys.txt"
+    # shellcheck disable=SC2086
+    "./$out/config_mono" --grey $volumes >"$out/config_mono.txt"
+    grep -Ev ' (feature|absent)$' "$out/config_mono.txt" >"$out/mono.has"
+    [ "$(wc -l <"$out/mono.has")" -ge 1 ] &&
+        ! grep -vxFf "$out/greys.txt" "$out/mono.has"
+}
+check "config_mono: at least 1 scene has the full configuration's greys" \
+    same_greys
+
+# refuses FLAGS PATTERN: the preprocessor stops, and says why.
+refuses()
+{
+    # shellcheck disable=SC2086
+    ! gcc -fsyntax-only -Icore $1 core/brume.c 2>"$out/refused.log" &&
+        grep -q "#error \"brume: $2" "$out/refused.log"
+}
+no_format="-DBRUME_WITH_U8=0 -DBRUME_WITH_U8R=0 -DBRUME_WITH_U4R=0"
+check "no format: an #error" refuses "$no_format" "no format"
+check "no lookup: an #error" refuses \
+    "-DBRUME_WITH_NEAREST=0 -DBRUME_WITH_TRILINEAR=0" "no lookup"
+for limit in MAX_SIZE=16385 MAX_SIZE=0 MAX_LOG_SAMPLES=17 \
+    MAX_UNIFORM_SAMPLES=4097 SPAN=65 SPAN=0; do
+    check "$limit: an #error" refuses "-DBRUME_$limit" "BRUME_${limit%=*} is"
+done
+
 every_configuration_is_tried()
 {
     for header in tests/targets/configs/*.h; do

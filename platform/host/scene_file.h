@@ -46,7 +46,7 @@ struct scene_settings {
     bool set[SCENE_KEYS];
     double value[SCENE_KEYS][3];
     const struct brume_noise_table *noise_file; /* or NULL */
-    char where[SCENE_KEYS][SCENE_WHERE_SIZE]; /* file:line, cut to fit */
+    char where[SCENE_KEYS][SCENE_WHERE_SIZE];   /* file:line, cut to fit */
 };
 
 /* One `key = value`; `where` is for messages. */

@@ -16,6 +16,7 @@
  * at those rows only whose bound is below it.
  */
 #include "cluster.h"
+#include "noise.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -31,18 +32,6 @@ struct field {
     int32_t *energy; /* [frame][y][x] */
     int32_t *bound;  /* [frame][y]: no energy of the row is below */
 };
-
-/// Random numbers ///
-
-/* A bijection of 32 bits: C. Wellons' lowbias32. */
-static uint32_t mix(uint32_t h)
-{
-    h ^= h >> 16;
-    h *= 0x7feb352du;
-    h ^= h >> 15;
-    h *= 0x846ca68bu;
-    return h ^ h >> 16;
-}
 
 /// Field ///
 
@@ -150,8 +139,8 @@ static void field_clear(struct field *f, uint32_t seed)
     size_t count = area_of(f) * f->frames;
 
     for (size_t i = 0; i < count; i++)
-        f->energy[i] =
-            (int32_t)(mix((uint32_t)i ^ mix(seed)) >> (32 - NOISE_BITS));
+        f->energy[i] = (int32_t)(noise_hash((uint32_t)i ^ noise_hash(seed)) >>
+                                 (32 - NOISE_BITS));
     memset(f->bound, 0, (size_t)f->height * f->frames * sizeof *f->bound);
 }
 

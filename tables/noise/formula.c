@@ -28,20 +28,12 @@ static void fill(struct noise_texture *t,
 
 /// White ///
 
-/* Wellons' lowbias32. */
-static uint32_t hash(uint32_t h)
-{
-    h ^= h >> 16;
-    h *= 0x7feb352du;
-    h ^= h >> 15;
-    h *= 0x846ca68bu;
-    return h ^ h >> 16;
-}
-
 static uint32_t white(uint32_t x, uint32_t y, uint32_t frame, uint32_t seed)
 {
     const uint32_t later = frame + 65536u * seed;
-    return hash(x + hash(y + hash(2u * later + 0x9e3779b9u))) >> 24;
+    return noise_hash(x +
+                      noise_hash(y + noise_hash(2u * later + 0x9e3779b9u))) >>
+           24;
 }
 
 void noise_white(struct noise_texture *t, uint32_t seed)
@@ -53,7 +45,7 @@ void noise_white(struct noise_texture *t, uint32_t seed)
  * bias is below n / 2^32. */
 static uint32_t below(uint32_t n, uint32_t *counter)
 {
-    return (uint32_t)((uint64_t)hash(++*counter) * n >> 32);
+    return (uint32_t)((uint64_t)noise_hash(++*counter) * n >> 32);
 }
 
 static void shuffle(uint8_t order[64], uint32_t *counter)
@@ -70,7 +62,7 @@ static void shuffle(uint8_t order[64], uint32_t *counter)
 
 void noise_white8(struct noise_texture *t, uint32_t seed)
 {
-    uint32_t counter = hash(seed + 0x9e3779b9u);
+    uint32_t counter = noise_hash(seed + 0x9e3779b9u);
     uint8_t order[64];
 
     for (uint32_t frame = 0; frame < t->frames; frame++) {

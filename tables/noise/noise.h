@@ -37,4 +37,8 @@ int noise_texture_write(const struct noise_texture *t, const char *path,
 int noise_file_write(const char *path, const void *bytes, size_t size,
                      char *err, size_t err_size);
 
+/* A bijection of 32 bits, lowbias32 of C. Wellons' hash prospector: every
+ * random choice here is one of its values. */
+uint32_t noise_hash(uint32_t h);
+
 #endif

@@ -19,15 +19,6 @@ struct swap {
     uint8_t a, b;
 };
 
-static uint32_t mix(uint32_t h)
-{
-    h ^= h >> 16;
-    h *= 0x7feb352du;
-    h ^= h >> 15;
-    h *= 0x846ca68bu;
-    return h ^ h >> 16;
-}
-
 static int64_t clamped(const struct swap *s, uint8_t value, int32_t weight)
 {
     uint8_t v = value < s->a ? s->a : value;
@@ -123,14 +114,14 @@ void refine_swap(struct noise_texture *t, const struct kernel *kernel,
                  uint32_t tries, uint32_t seed, cluster_progress *progress)
 {
     struct swap s = {t, kernel, 0, 0};
-    uint32_t area = t->width * t->height, state = mix(seed);
+    uint32_t area = t->width * t->height, state = noise_hash(seed);
     uint64_t all = (uint64_t)area * t->frames * tries;
 
     for (uint64_t i = 0; i < all; i++) {
         uint32_t z = (uint32_t)(i % t->frames);
         uint8_t *frame = t->values + (size_t)z * area;
         uint32_t p = (uint32_t)(i / t->frames) & (area - 1);
-        uint32_t q = (state = mix(state + 0x9e3779b9u)) & (area - 1);
+        uint32_t q = (state = noise_hash(state + 0x9e3779b9u)) & (area - 1);
         if (improves(&s, z, p, q)) {
             uint8_t value = frame[p];
             frame[p] = frame[q];
@@ -163,7 +154,8 @@ bool refine_spread(struct noise_texture *t, uint32_t seed)
         uint8_t *frame = t->values + (size_t)z * area;
         for (uint32_t i = 0; i < area; i++)
             key[i] = (uint64_t)frame[i] << 48 |
-                     (uint64_t)(mix(i + area * z + seed) >> 16) << 32 | i;
+                     (uint64_t)(noise_hash(i + area * z + seed) >> 16) << 32 |
+                     i;
         qsort(key, area, sizeof *key, ascending);
         for (uint32_t n = 0; n < area; n++)
             frame[key[n] & 0xffffffffu] =

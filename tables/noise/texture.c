@@ -9,6 +9,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+uint32_t noise_hash(uint32_t h)
+{
+    h ^= h >> 16;
+    h *= 0x7feb352du;
+    h ^= h >> 15;
+    h *= 0x846ca68bu;
+    return h ^ h >> 16;
+}
+
 bool noise_texture_make(struct noise_texture *t, uint32_t width,
                         uint32_t height, uint32_t frames, uint32_t channels)
 {
