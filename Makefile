@@ -11,6 +11,9 @@ PREFIX ?= /usr/local
 DATA ?= ../shared/data
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 
+ifeq ($(wildcard platform/$(CONF)/conf.mk),)
+$(error CONF=$(CONF): there is no platform/$(CONF)/conf.mk)
+endif
 include platform/$(CONF)/conf.mk
 ifneq ($(CONF),host)
 include platform/targets.mk

@@ -73,7 +73,7 @@ static void codes_of(const struct brume_frame *f,
 static void pack_l8(const struct brume_frame *f,
                     const struct brume_radiance *in, uint32_t n, uint8_t *dst)
 {
-    uint32_t code[3];
+    uint32_t code[3] = {0, 0, 0};
     for (uint32_t i = 0; i < n; i++) {
         codes_of(f, in, i, code, 1);
         dst[i] = (uint8_t)code[0];
@@ -84,7 +84,7 @@ static void pack_rgb888(const struct brume_frame *f,
                         const struct brume_radiance *in, uint32_t n,
                         uint8_t *dst)
 {
-    uint32_t code[3];
+    uint32_t code[3] = {0, 0, 0};
     for (uint32_t i = 0; i < n; i++, dst += 3) {
         codes_of(f, in, i, code, 3);
         for (int c = 0; c < 3; c++)
@@ -103,7 +103,7 @@ static void pack_rgb565(const struct brume_frame *f,
                         const struct brume_radiance *in, uint32_t n,
                         uint16_t *dst, bool swapped)
 {
-    uint32_t code[3];
+    uint32_t code[3] = {0, 0, 0};
     for (uint32_t i = 0; i < n; i++) {
         codes_of(f, in, i, code, 3);
         uint32_t word = level(code[0], 31) << 11 | level(code[1], 63) << 5 |
@@ -118,7 +118,7 @@ static void pack_xrgb8888(const struct brume_frame *f,
                           const struct brume_radiance *in, uint32_t n,
                           uint32_t *dst)
 {
-    uint32_t code[3];
+    uint32_t code[3] = {0, 0, 0};
     for (uint32_t i = 0; i < n; i++) {
         codes_of(f, in, i, code, 3);
         dst[i] = code[0] << 16 | code[1] << 8 | code[2];

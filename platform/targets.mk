@@ -52,25 +52,27 @@ $(T)/demo/%.o: %.c platform/$(CONF)/conf.mk
 	$(CC) $(ARCH_FLAGS) $(CPPFLAGS) $(DEMO_CPPFLAGS) -std=c11 \
 		-ffreestanding $(WARN) $(CFLAGS) -MMD -MP -c -o $@ $<
 
-$(T)/demo/%.o: %.S $(T)/demo/cloud.brume
+# ASSET, or the procedural cloud: its path is in asset.h, which changes with it.
+DEMO_ASSET = $(abspath $(or $(ASSET),$(T)/demo/cloud.brume))
+
+$(patsubst %.S,$(T)/demo/%.o,$(TARGET_ASSETS_SRC)): $(T)/demo/asset.h \
+	$(DEMO_ASSET)
+$(T)/demo/%.o: %.S
 	@mkdir -p $(@D)
-	echo 'ASSET(cloud, "$(abspath $(T)/demo/cloud.brume)")' >$(T)/demo/cloud.h
-	$(CC) $(ARCH_FLAGS) -DTARGET_ASSETS='"$(abspath $(T)/demo/cloud.h)"' \
+	$(CC) $(ARCH_FLAGS) -DTARGET_ASSETS='"$(abspath $(T)/demo/asset.h)"' \
 		-c -o $@ $<
 
-ifneq ($(ASSET),)
-$(T)/demo/cloud.brume: FORCE
+$(T)/demo/asset.h: FORCE
 	@mkdir -p $(@D)
-	cmp -s "$(ASSET)" $@ || cp "$(ASSET)" $@
-FORCE:
-else
-$(T)/demo/cloud.brume: platform/$(CONF)/conf.mk
+	@echo 'ASSET(cloud, "$(DEMO_ASSET)")' >$@.new
+	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
+
+$(abspath $(T))/demo/cloud.brume: platform/$(CONF)/conf.mk
 	@mkdir -p $(@D)
 	@$(MAKE) --no-print-directory CONF=host $(BUILD)/brume-cloud \
 		$(BUILD)/brume-bake
 	$(BUILD)/brume-cloud -o $(@D)/cloud.vdb $(DEMO_CLOUD)
 	$(BUILD)/brume-bake $(@D)/cloud.vdb -o $@ $(DEMO_BAKE)
-endif
 
 .PHONY: target-info FORCE
 target-info: # for tests/targets/run.sh
