@@ -16,6 +16,7 @@ build()
 {
     name=$1
     shift
+    rm -f "$out/$name.txt"
     # shellcheck disable=SC2086
     "$@" -std=c11 -Icore -Itests $files -o "$out/$name" 2>"$out/$name.log" &&
         "./$out/$name" $volumes >"$out/$name.txt" 2>>"$out/$name.log"
@@ -31,6 +32,10 @@ same_hashes()
     fi
 }
 
+# try NAME LEAST COMPILER FLAGS...: builds in the background, two at a time.
+# judge then says of all that were tried what came of them.
+tried=
+running=0
 try()
 {
     name=$1 least=$2
@@ -39,9 +44,21 @@ try()
         skip "$name: no $1 here"
         return
     fi
-    build "$name" "$@" || cat "$out/$name.log"
-    check "$name: at least $least scenes have the golden hash" \
-        same_hashes "$name" "$least"
+    tried="$tried $name=$least"
+    build "$name" "$@" &
+    running=$((running + 1))
+    [ $((running % 2)) != 0 ] || wait
+}
+
+judge()
+{
+    wait
+    for build in $tried; do
+        name=${build%=*} least=${build#*=}
+        [ -s "$out/$name.txt" ] || cat "$out/$name.log"
+        check "$name: at least $least scenes have the golden hash" \
+            same_hashes "$name" "$least"
+    done
 }
 
 sanitize="-g -fsanitize=address,undefined -fno-sanitize-recover=all"
@@ -59,6 +76,15 @@ try clang_O3 22 clang -O3
 # shellcheck disable=SC2086
 try clang_sanitizers 22 clang -O1 $sanitize -DBRUME_FIXED_DEBUG
 
+# The configurations that docs/TARGETS.md offers: the scenes that each supports,
+# at least so many.
+for config in smallest=20 u4r_nearest=2 u8r_trilinear=4 preview=23 full=32; do
+    try "config_${config%=*}" "${config#*=}" gcc -Os \
+        -DBRUME_CONFIG="\"targets/configs/${config%=*}.h\""
+done
+
+judge
+
 # Truncated, flipped and forged assets, where a bad access would trap.
 hostile_assets()
 {
@@ -69,13 +95,6 @@ hostile_assets()
         { tail -n 20 "$out/hostile.log"; return 1; }
 }
 check "hostile assets under ASan and UBSan" hostile_assets
-
-# The configurations that docs/TARGETS.md offers: the scenes that each supports,
-# at least so many.
-for config in smallest=20 u4r_nearest=2 u8r_trilinear=4 preview=23 full=32; do
-    try "config_${config%=*}" "${config#*=}" gcc -Os \
-        -DBRUME_CONFIG="\"targets/configs/${config%=*}.h\""
-done
 
 # mono.h has no colour: grey pixels, against those of the full configuration.
 build config_mono gcc -Os -DBRUME_CONFIG='"targets/configs/mono.h"' ||
