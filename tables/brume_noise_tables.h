@@ -31,6 +31,10 @@ extern const struct brume_noise_table brume_noise_blue_slices; /* 64x64x16 */
 /* Random orders of 64 values, each frame its own. */
 extern const struct brume_noise_table brume_noise_white8; /* 8x8x16 */
 
+/* Bayer's matrix 8x8, for BRUME_NOISE_TABLE_GOLDEN; without a change over time
+ * BRUME_NOISE_BAYER8 needs no table. */
+extern const struct brume_noise_table brume_noise_bayer8;
+
 /* N-rooks sets of 1 .. 16 points in their order of use: 16 row + column. */
 extern const uint8_t brume_nrooks[16][16];
 

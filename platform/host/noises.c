@@ -15,14 +15,6 @@ const char noise_words[] =
     "blue-slices stbn stbn-small stbn-tiny fast fast-small fast-tiny golden "
     "bayer8-golden r2 nrooks";
 
-/* Bayer's matrix 8x8 as a table: four of 256 values per step. */
-static const uint8_t k_bayer8_values[64] = {
-    2,  130, 34, 162, 10, 138, 42, 170, 194, 66,  226, 98,  202, 74,  234, 106,
-    50, 178, 18, 146, 58, 186, 26, 154, 242, 114, 210, 82,  250, 122, 218, 90,
-    14, 142, 46, 174, 6,  134, 38, 166, 206, 78,  238, 110, 198, 70,  230, 102,
-    62, 190, 30, 158, 54, 182, 22, 150, 254, 126, 222, 94,  246, 118, 214, 86};
-static const struct brume_noise_table k_bayer8 = {k_bayer8_values, 3, 3, 0, 8};
-
 static const struct {
     uint8_t noise;
     const struct brume_noise_table *table;
@@ -45,30 +37,36 @@ static const struct {
     {BRUME_NOISE_TABLE, &brume_noise_fast_small},
     {BRUME_NOISE_TABLE, &brume_noise_fast_tiny},
     {BRUME_NOISE_TABLE_GOLDEN, &brume_noise_blue},
-    {BRUME_NOISE_TABLE_GOLDEN, &k_bayer8},
+    {BRUME_NOISE_TABLE_GOLDEN, &brume_noise_bayer8},
     {BRUME_NOISE_TABLE_R2, &brume_noise_blue},
 };
 #define NOISES (sizeof k_noise / sizeof k_noise[0])
 
 /* The last name: the blue table, frame f moved to point f of the 16 N-rooks
- * points, in sixteenths of its sides. Made on first use. */
-static const struct brume_noise_table *nrooks(void)
+ * points, in sixteenths of its sides. Made when it is chosen. */
+static uint8_t s_nrooks_values[64 * 64 * 16];
+static const struct brume_noise_table k_nrooks = {s_nrooks_values, 6, 6, 4, 8};
+
+static void make_nrooks(void)
 {
-    static uint8_t values[64 * 64 * 16];
-    static const struct brume_noise_table k_table = {values, 6, 6, 4, 8};
-    for (unsigned i = 0; i < sizeof values; i++) {
+    for (unsigned i = 0; i < sizeof s_nrooks_values; i++) {
         unsigned point = brume_nrooks[15][i >> 12];
         unsigned x = (i + 4 * (point & 15)) & 63;
         unsigned y = ((i >> 6) + 4 * (point >> 4)) & 63;
-        values[i] = brume_noise_blue.values[y * 64 + x];
+        s_nrooks_values[i] = brume_noise_blue.values[y * 64 + x];
     }
-    return &k_table;
 }
 
 void noise_choose(unsigned number, struct brume_scene *scene)
 {
-    scene->noise = number < NOISES ? k_noise[number].noise : BRUME_NOISE_TABLE;
-    scene->noise_table = number < NOISES ? k_noise[number].table : nrooks();
+    if (number < NOISES) {
+        scene->noise = k_noise[number].noise;
+        scene->noise_table = k_noise[number].table;
+        return;
+    }
+    make_nrooks();
+    scene->noise = BRUME_NOISE_TABLE;
+    scene->noise_table = &k_nrooks;
 }
 
 unsigned noise_number(const struct brume_scene *scene)
@@ -78,7 +76,7 @@ unsigned noise_number(const struct brume_scene *scene)
             (scene->noise < BRUME_NOISE_TABLE ||
              k_noise[i].table == scene->noise_table))
             return i;
-    return scene->noise_table == nrooks() ? NOISES : 0;
+    return scene->noise_table == &k_nrooks ? NOISES : 0;
 }
 
 /// Files ///

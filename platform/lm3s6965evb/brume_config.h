@@ -1,10 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-/* Nearest lookup in u8 and u4r, light of doubling steps. */
-#define BRUME_WITH_U8 1
-#define BRUME_WITH_U8R 0
-#define BRUME_WITH_U4R 1
-#define BRUME_WITH_APRON 0
-#define BRUME_WITH_TRILINEAR 0
-#define BRUME_WITH_UNIFORM 0
-#define BRUME_WITH_MAX_DENSITY 0
+/* For a grey display. */
+#include "demo/nearest.h"
 #define BRUME_WITH_RGB 0

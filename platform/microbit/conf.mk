@@ -1,13 +1,10 @@
 # BBC micro:bit: nRF51822, Cortex-M0, 256 KiB of flash, 16 KiB of RAM.
 BOARD = microbit
 TARGET_CPU = cortex-m0
-TARGET_MACHINE = microbit
 TARGET_FLASH = 262144
 TARGET_RAM = 16384
 TARGET_ASSETS_MAX = 204800
 include platform/cortexm/cortexm.mk
 DEMO_SRC = platform/microbit/demo.c platform/demo/demo.c
-DEMO_CPPFLAGS = -DBRUME_CONFIG='"brume_config.h"' -Iplatform \
-	-ffunction-sections -fdata-sections
 DEMO_CLOUD = --size 112
 DEMO_BAKE = --format u4r

@@ -2,10 +2,7 @@
 # Cortex-M3 of AN385 (QEMU takes no other core there). For assets that are too
 # large for the boards with a Cortex-M0.
 BOARD = mps2-m0
-BOARD_MAP = mps2-an385
 TARGET_CPU = cortex-m0
 TARGET_MACHINE = mps2-an385
-TARGET_FLASH = 4194304
-TARGET_RAM = 4194304
-TARGET_ASSETS_MAX = 4128768
+include platform/mps2-an385/map.mk
 include platform/cortexm/cortexm.mk

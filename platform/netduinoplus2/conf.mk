@@ -1,13 +1,10 @@
 # Netduino Plus 2: STM32F405, Cortex-M4, 1 MiB of flash, 128 KiB of RAM.
 BOARD = netduinoplus2
 TARGET_CPU = cortex-m4
-TARGET_MACHINE = netduinoplus2
 TARGET_FLASH = 1048576
 TARGET_RAM = 131072
 TARGET_ASSETS_MAX = 983040
 include platform/cortexm/cortexm.mk
 DEMO_SRC = platform/netduinoplus2/demo.c platform/demo/demo.c
-DEMO_CPPFLAGS = -DBRUME_CONFIG='"brume_config.h"' -Iplatform \
-	-ffunction-sections -fdata-sections
 DEMO_CLOUD = --size 160
 DEMO_BAKE = --format u4r

@@ -3,6 +3,8 @@
  * Noises that are formulas of pixel and frame, or a 2D table and a formula
  * over time. Integers only: the same bytes everywhere. Each fills a texture of
  * one channel; a value is the upper byte of what the core computes in 16 bits.
+ * tables/ depends on nothing, so these are written a second time;
+ * tests/test_noise_formula.c holds them against the core's.
  */
 #ifndef BRUME_TABLES_FORMULA_H
 #define BRUME_TABLES_FORMULA_H
