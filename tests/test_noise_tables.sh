@@ -362,8 +362,13 @@ check "--space vec4" fails 2 'space cannot be' fast --space vec4 $to
 check "a filter for white" fails 2 'no option of fast' white --filter box3 $to
 check "two frames of blue" fails 2 'one frame' blue --size 8x8x2 $to
 check "an output of no kind" fails 2 'not .png' fast -o "$none/out.gif"
-check "an output that is no name in C" fails 2 'name in C' fast \
-    -o "$none/a-b.c"
+check "an output without a name" fails 2 'no name' fast -o "$none/.c"
+named_for_c()
+{
+    "$noise" ign --size 8x8x1 -o "$work/a-b 1.c" &&
+        grep -q 'struct brume_noise_table brume_a_b_1 = ' "$work/a-b 1.c"
+}
+check "what is no letter or digit in a name becomes _" named_for_c
 check "a spectrum of no kind" fails 2 'unknown extension' fast \
     --spectrum "$none/out.gif"
 check "an output in no folder" fails 1 'none/no/out.raw' blue \

@@ -25,9 +25,12 @@ static enum kind kind_of(const char *path)
     return strcmp(dot, ".c") ? KIND_NONE : KIND_C;
 }
 
-/* The file's name without folder and .c, as a C identifier. */
+/* The file's name without folder and .c, as a part of a C identifier: what is
+ * no letter or digit becomes _. */
 static bool name_of(const char *path, char name[NAME_SIZE])
 {
+    static const char k_legal[] = "abcdefghijklmnopqrstuvwxyz"
+                                  "ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
     const char *slash = strrchr(path, '/');
     const char *base = slash ? slash + 1 : path;
     size_t length = strlen(base) - 2;
@@ -36,8 +39,10 @@ static bool name_of(const char *path, char name[NAME_SIZE])
         return false;
     memcpy(name, base, length);
     name[length] = 0;
-    return strspn(name, "abcdefghijklmnopqrstuvwxyz"
-                        "ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789") == length;
+    for (size_t i = strspn(name, k_legal); i < length;
+         i += strspn(name + i, k_legal))
+        name[i] = '_';
+    return true;
 }
 
 int table_file_check(const char *path, char *err, size_t err_size)
@@ -48,7 +53,8 @@ int table_file_check(const char *path, char *err, size_t err_size)
     if (kind == KIND_NONE)
         snprintf(err, err_size, "%s: not .png, .raw or .c", path);
     else if (kind == KIND_C && !name_of(path, name))
-        snprintf(err, err_size, "%s: not a name in C", path);
+        snprintf(err, err_size, "%s: no name, or one of more than %d letters",
+                 path, NAME_SIZE - 1);
     else
         return 0;
     return -1;
