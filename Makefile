@@ -181,8 +181,8 @@ $(BUILD)/tests/%.o: tests/%.cpp
 
 $(BUILD)/tests/%.o: tests/%.c
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) -Itests -Itables/noise -Iplatform/host $(HOST_FLAGS) \
-		$(CFLAGS) -MMD -MP -c -o $@ $<
+	$(CC) $(CPPFLAGS) -Itests -Itables -Itables/noise -Iplatform/host \
+		$(HOST_FLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
 
 .SECONDARY:
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
