@@ -32,8 +32,7 @@ PACKAGES = gcc g++ libc6-dev libopenvdb-dev libnanovdb-dev libboost-dev \
 TEST_PACKAGES = $(PACKAGES) clang libclang-rt-14-dev binutils netpbm pngcheck
 
 CORE_OBJ = $(patsubst core/%.c,$(BUILD)/core/%.o,$(wildcard core/*.c))
-TABLE_OBJ = $(patsubst %.c,$(BUILD)/%.o,$(wildcard tables/noise_*.c) \
-	tables/nrooks.c)
+TABLE_OBJ = $(patsubst %.c,$(BUILD)/%.o,$(wildcard tables/noise_*.c))
 NOISE_OBJ = $(patsubst %.c,$(BUILD)/%.o,\
 	$(filter-out %_main.c,$(wildcard tables/noise/*.c)))
 HOST_OBJ = $(patsubst platform/%.c,$(BUILD)/%.o,$(HOST_SRC))

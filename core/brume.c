@@ -160,6 +160,11 @@ void brume_scene_default(struct brume_scene *scene,
     s->background[2] = 32768;
     s->output = BRUME_SRGB;
     s->skip = true;
+    s->alpha = 6554; /* 0.1 */
+    s->window = 8;
+    s->clamp = BRUME_CLAMP_VARIANCE;
+    s->fetch = BRUME_FETCH_CATMULL_ROM;
+    s->gamma = 0x8000;
 }
 
 /// Frame ///
@@ -211,6 +216,35 @@ static void copy_scene(struct brume_frame *f, const struct brume_scene *s)
     }
 }
 
+#if BRUME_WITH_TAA
+/* A word that changes with what rays see, but not with noise or camera. */
+static uint32_t sameness(const struct brume_frame *f)
+{
+    const uint32_t part[] = {
+        (uint32_t)f->sun[0],
+        (uint32_t)f->sun[1],
+        (uint32_t)f->sun[2],
+        f->min_density,
+        f->max_density,
+        f->tau_m,
+        f->tau_shift,
+        f->min_transmittance,
+        f->albedo,
+        f->step,
+        f->light_step,
+        f->light_samples,
+        f->kernel,
+        le32(*(const brume_word_t *)(const void *)(f->volume->asset +
+                                                   BRUME_OFF_CRC))};
+    uint32_t h = 0;
+    for (uint32_t i = 0; i < 512; i++)
+        h = h * 16777619u ^ f->table[i];
+    for (uint32_t i = 0; i < sizeof part / sizeof *part; i++)
+        h = (h ^ h >> 15) * 2246822519u ^ part[i];
+    return h;
+}
+#endif
+
 int brume_begin_frame(struct brume_frame *frame,
                       const struct brume_volume *volume,
                       const struct brume_scene *scene)
@@ -219,19 +253,59 @@ int brume_begin_frame(struct brume_frame *frame,
         volume->cells == NULL)
         return BRUME_ERR_NULL;
     int err = check_scene(scene);
+    if (err == BRUME_OK)
+        err = brume_lattice_check(scene);
     if (err)
         return err;
     frame->volume = volume;
     copy_scene(frame, scene);
+    brume_lattice_begin(frame, scene);
     err = brume_camera_begin(frame, scene);
     if (err)
         return err;
     if (!brume_normalise(frame->sun))
         return BRUME_ERR_SUN;
-    return brume_march_begin(frame, scene);
+    err = brume_march_begin(frame, scene);
+#if BRUME_WITH_TAA
+    if (err == BRUME_OK)
+        frame->same = sameness(frame);
+#endif
+    return err;
 }
 
 /// Pixels ///
+
+static bool rect_fits(const uint16_t size[2], unsigned x, unsigned y,
+                      unsigned w, unsigned h)
+{
+    return x <= size[0] && w <= size[0] - x && y <= size[1] && h <= size[1] - y;
+}
+
+/* Is there room for w x h pixels, and is their format compiled in? */
+static int check_pixels(int pixel_format, unsigned w, unsigned h, size_t stride)
+{
+    unsigned bytes = brume_pixel_bytes(pixel_format);
+    if (bytes == 0 || (h > 1 && stride < (size_t)w * bytes))
+        return BRUME_ERR_RECT;
+    return BRUME_WITH_RGB || pixel_format == BRUME_L8 ||
+                   pixel_format == BRUME_L16
+               ? BRUME_OK
+               : BRUME_ERR_FEATURE;
+}
+
+/* Does brume_render_rect alone give the frame? */
+static bool is_plain(const struct brume_frame *f)
+{
+#if BRUME_WITH_SPATIAL
+    if (f->spatial != BRUME_SPATIAL_NONE)
+        return false;
+#endif
+#if BRUME_WITH_TEMPORAL
+    if (f->temporal != BRUME_TEMPORAL_NONE)
+        return false;
+#endif
+    return f->lattice[0] == f->width && f->lattice[1] == f->height;
+}
 
 int brume_render_rect(const struct brume_frame *frame, unsigned x, unsigned y,
                       unsigned w, unsigned h, int pixel_format, void *dst,
@@ -241,13 +315,13 @@ int brume_render_rect(const struct brume_frame *frame, unsigned x, unsigned y,
     unsigned bytes = brume_pixel_bytes(pixel_format);
     if (frame == NULL || dst == NULL)
         return BRUME_ERR_NULL;
-    if (bytes == 0 || x > frame->width || w > frame->width - x ||
-        y > frame->height || h > frame->height - y ||
-        (h > 1 && stride < (size_t)w * bytes))
+    int err = check_pixels(pixel_format, w, h, stride);
+    if (err)
+        return err;
+    if (!is_plain(frame))
+        return BRUME_ERR_STATE;
+    if (!rect_fits(frame->lattice, x, y, w, h))
         return BRUME_ERR_RECT;
-    if (!BRUME_WITH_RGB && pixel_format != BRUME_L8 &&
-        pixel_format != BRUME_L16)
-        return BRUME_ERR_FEATURE;
     for (unsigned j = 0; j < h; j++) {
         uint8_t *to = (uint8_t *)dst + j * stride;
         for (unsigned i = 0; i < w; i += BRUME_SPAN) {
@@ -259,3 +333,97 @@ int brume_render_rect(const struct brume_frame *frame, unsigned x, unsigned y,
     }
     return BRUME_OK;
 }
+
+#if BRUME_WITH_SEQUENCES
+int brume_march_rect(const struct brume_frame *frame, unsigned x, unsigned y,
+                     unsigned w, unsigned h, struct brume_radiance *out,
+                     size_t stride)
+{
+    if (frame == NULL || out == NULL)
+        return BRUME_ERR_NULL;
+    if (!rect_fits(frame->lattice, x, y, w, h) || (h > 1 && stride < w))
+        return BRUME_ERR_RECT;
+    for (unsigned j = 0; j < h; j++, out += stride)
+        for (unsigned i = 0; i < w; i += BRUME_SPAN)
+            brume_march_span(frame, x + i, y + j,
+                             w - i < BRUME_SPAN ? w - i : BRUME_SPAN, out + i);
+    return BRUME_OK;
+}
+
+int brume_pack_rect(const struct brume_frame *frame,
+                    const struct brume_radiance *in, size_t in_stride,
+                    unsigned w, unsigned h, int pixel_format, void *dst,
+                    size_t stride)
+{
+    if (frame == NULL || in == NULL || dst == NULL)
+        return BRUME_ERR_NULL;
+    int err = check_pixels(pixel_format, w, h, stride);
+    if (err == BRUME_OK && h > 1 && in_stride < w)
+        err = BRUME_ERR_RECT;
+    for (unsigned j = 0; err == BRUME_OK && j < h; j++)
+        brume_pack_span(frame, in + j * in_stride, w, pixel_format,
+                        (uint8_t *)dst + j * stride);
+    return err;
+}
+
+#endif
+
+/// Sequences ///
+
+#if BRUME_WITH_TEMPORAL
+static int check_state(const struct brume_frame *frame,
+                       const struct brume_state *state)
+{
+    if (frame == NULL || state == NULL)
+        return BRUME_ERR_NULL;
+    return brume_state_fits(state, frame) ? BRUME_OK : BRUME_ERR_STATE;
+}
+
+int brume_store_rect(const struct brume_frame *frame, struct brume_state *state,
+                     unsigned x, unsigned y, unsigned w, unsigned h,
+                     const struct brume_radiance *in, size_t stride)
+{
+    int err = in == NULL ? BRUME_ERR_NULL : check_state(frame, state);
+    if (err)
+        return err;
+    if (!rect_fits(frame->lattice, x, y, w, h) || (h > 1 && stride < w))
+        return BRUME_ERR_RECT;
+    for (unsigned j = 0; j < h; j++)
+        brume_store_span(frame, state, x, y + j, w, in + j * stride);
+    return BRUME_OK;
+}
+
+int brume_trace_rect(const struct brume_frame *frame, struct brume_state *state,
+                     unsigned x, unsigned y, unsigned w, unsigned h)
+{
+    struct brume_radiance row[BRUME_SPAN];
+    int err = check_state(frame, state);
+    if (err)
+        return err;
+    if (!rect_fits(frame->lattice, x, y, w, h))
+        return BRUME_ERR_RECT;
+    for (unsigned j = 0; j < h; j++)
+        for (unsigned i = 0; i < w; i += BRUME_SPAN) {
+            unsigned n = w - i < BRUME_SPAN ? w - i : BRUME_SPAN;
+            brume_march_span(frame, x + i, y + j, n, row);
+            brume_store_span(frame, state, x + i, y + j, n, row);
+        }
+    return BRUME_OK;
+}
+
+int brume_resolve_rect(const struct brume_frame *frame,
+                       struct brume_state *state, unsigned x, unsigned y,
+                       unsigned w, unsigned h)
+{
+    int err = check_state(frame, state);
+    if (err)
+        return err;
+    if (!rect_fits(frame->grid, x, y, w, h))
+        return BRUME_ERR_RECT;
+#if BRUME_WITH_TAA
+    for (unsigned j = 0; frame->temporal == BRUME_TAA && j < h; j++)
+        brume_resolve_span(frame, state, x, y + j, w);
+#endif
+    return BRUME_OK;
+}
+#endif

@@ -91,12 +91,32 @@ extern "C" {
 #ifndef BRUME_WITH_NOISE /* jitter; 0.6 KiB */
 #define BRUME_WITH_NOISE 1
 #endif
-
-#if !(BRUME_WITH_U8 || BRUME_WITH_U8R || BRUME_WITH_U4R)
-#error "brume: no format: set BRUME_WITH_U8, BRUME_WITH_U8R or BRUME_WITH_U4R"
+/* All of "Sequences" below, brume_march_rect and brume_pack_rect; or which of
+ * it: */
+#ifndef BRUME_WITH_SEQUENCES
+#define BRUME_WITH_SEQUENCES 1
 #endif
-#if !(BRUME_WITH_NEAREST || BRUME_WITH_TRILINEAR)
-#error "brume: no lookup: set BRUME_WITH_NEAREST or BRUME_WITH_TRILINEAR"
+#ifndef BRUME_WITH_TEMPORAL /* temporal = ema and window, update, subpixel */
+#define BRUME_WITH_TEMPORAL BRUME_WITH_SEQUENCES
+#endif
+#ifndef BRUME_WITH_TAA /* temporal = taa; needs the one above */
+#define BRUME_WITH_TAA (BRUME_WITH_SEQUENCES && BRUME_WITH_TEMPORAL)
+#endif
+#ifndef BRUME_WITH_SPATIAL /* spatial filters */
+#define BRUME_WITH_SPATIAL BRUME_WITH_SEQUENCES
+#endif
+#ifndef BRUME_WITH_RESOLUTION /* half and quarter */
+#define BRUME_WITH_RESOLUTION BRUME_WITH_SEQUENCES
+#endif
+
+/* Rays have a mean depth when something uses it. */
+#define BRUME_WITH_DEPTH \
+    (BRUME_WITH_TAA || BRUME_WITH_SPATIAL || BRUME_WITH_RESOLUTION)
+#if BRUME_WITH_TAA && !BRUME_WITH_TEMPORAL
+#error "brume: BRUME_WITH_TAA needs BRUME_WITH_TEMPORAL"
+#endif
+#if !BRUME_WITH_SEQUENCES && (BRUME_WITH_TEMPORAL || BRUME_WITH_DEPTH)
+#error "brume: set BRUME_WITH_SEQUENCES, and what of it is not wanted to 0"
 #endif
 
 /* Light samples written out one by one: 1.8 KiB more per kernel with log
@@ -210,7 +230,8 @@ enum brume_error {
     BRUME_ERR_STEP = -16,     /* step or light_step out of range */
     BRUME_ERR_SAMPLES = -17,  /* light_samples out of range */
     BRUME_ERR_SCENE = -18,    /* another scene field out of range */
-    BRUME_ERR_RECT = -19      /* rectangle not inside the frame, or stride */
+    BRUME_ERR_RECT = -19,     /* rectangle not inside the frame, or stride */
+    BRUME_ERR_STATE = -20     /* no state, too small, or not begun */
 };
 
 /* One line of English for an error code; never NULL. */
@@ -304,6 +325,43 @@ struct brume_noise_table {
 
 enum brume_output { BRUME_LINEAR = 0, BRUME_SRGB = 1 };
 
+/* What frames before this one add; docs/temporal.md has the definitions. */
+enum brume_temporal {
+    BRUME_TEMPORAL_NONE = 0,
+    BRUME_EMA = 1,    /* exponential moving average, pixel by pixel */
+    BRUME_WINDOW = 2, /* mean of the last `window` frames */
+    BRUME_TAA = 3     /* moving average along the motion of the camera */
+};
+enum brume_fetch { BRUME_FETCH_BILINEAR = 0, BRUME_FETCH_CATMULL_ROM = 1 };
+enum brume_clamp { /* of taa's history, by the 3x3 samples around it, to */
+                   BRUME_CLAMP_NONE = 0,
+                   BRUME_CLAMP_MINMAX = 1,  /* their range */
+                   BRUME_CLAMP_VARIANCE = 2 /* mean +- gamma deviations */
+};
+enum brume_spatial { /* separable kernels; edges of the image are repeated */
+                     BRUME_SPATIAL_NONE = 0,
+                     BRUME_BOX3 = 1,
+                     BRUME_BOX5 = 2,
+                     BRUME_GAUSS1 = 3,     /* sigma 1, 7 taps */
+                     BRUME_BINOMIAL3 = 4,  /* 1 2 1 */
+                     BRUME_BINOMIAL5 = 5,  /* 1 4 6 4 1 */
+                     BRUME_BILATERAL15 = 6 /* sigma 1.5, 15 taps */
+};
+/* Rays per pixel: 1, 1/4, 1/16. The grid of rays is the image's size divided
+ * by 2^resolution, rounded up. */
+enum brume_resolution { BRUME_FULL = 0, BRUME_HALF = 1, BRUME_QUARTER = 2 };
+enum brume_update { /* rays of the grid that a frame marches */
+                    BRUME_UPDATE_ALL = 0,
+                    BRUME_CHECKER = 1, /* every other one, then the others */
+                    BRUME_BAYER4 = 2   /* one of 4x4, in Bayer's order */
+};
+enum brume_upsample {
+    BRUME_UPSAMPLE_BILINEAR = 0,
+    /* weights fall with the difference to the nearest ray's depth and
+     * transmittance */
+    BRUME_UPSAMPLE_AWARE = 1
+};
+
 /* A Q32.32 constant from a non-negative number below 2^32. The compiler
  * folds it, so firmware stays free of floating point. */
 #define BRUME_Q32(x) ((uint64_t)((x)*4294967296.0))
@@ -338,6 +396,25 @@ struct brume_scene {
     bool skip;              /* leap over empty cells; same image */
 
     const struct brume_noise_table *noise_table; /* or NULL; see noise */
+
+    /* Over time and over the image. All zero: brume_render_rect alone draws
+     * the frame. Else see brume_trace_rect. */
+    uint8_t temporal;     /* enum brume_temporal */
+    uint8_t history_bits; /* 8 or 16 per quantity; 0: 16 */
+    uint8_t window;       /* frames of BRUME_WINDOW, 1 .. 16 */
+    uint8_t fetch;        /* enum brume_fetch */
+    uint8_t clamp;        /* enum brume_clamp */
+    uint8_t spatial;      /* enum brume_spatial */
+    uint8_t resolution;   /* enum brume_resolution */
+    uint8_t update;       /* enum brume_update */
+    uint8_t upsample;     /* enum brume_upsample */
+    bool subpixel;        /* move each ray within its pixel, frame by frame */
+    bool cut;             /* forget the frames before this one */
+    uint32_t alpha;       /* Q0.16, weight of the new frame, 1/64 .. 1 */
+    uint32_t gamma;       /* Q16.16, of BRUME_CLAMP_VARIANCE, 0 .. 16 */
+    /* Edge-aware spatial filters: weights fall by e for each 1/edge_falloff
+     * octave of depth. Q16.16, 0 .. 1024; 0: plain. */
+    uint32_t edge_falloff;
 };
 
 /* A scene that shows any volume: 640x480, camera on the box of its non-zero
@@ -371,7 +448,14 @@ struct brume_outline {
     int32_t a, b;
 };
 
-/* All that is computed once a frame. No user-visible fields. */
+/* The camera, as reprojection needs it. */
+struct brume_view {
+    int32_t eye[3];                    /* Q16.16 */
+    int32_t ahead[3], right[3], up[3]; /* Q2.30, unit */
+    struct brume_number focal;         /* pixels of the image at distance 1 */
+};
+
+/* All that is computed once a frame. For users: grid and lattice. */
 struct brume_frame {
     const struct brume_volume *volume;
     /* Loss of transmittance per sample, Q0.32, by 8-bit density; or two
@@ -398,10 +482,37 @@ struct brume_frame {
     uint32_t step, light_step;    /* Q16.16 */
     uint32_t frame;
     uint16_t width, height;
+    uint16_t grid[2];    /* rays of the whole image, across and down */
+    uint16_t lattice[2]; /* those of this frame: what is marched */
     uint16_t light_samples;
     uint8_t kernel; /* which march, see brume_march.c */
     uint8_t light_kind, jitter, noise, output;
-    bool skip;
+    bool skip, cut;
+#if BRUME_WITH_DEPTH
+    bool depth; /* does anything use it? */
+#endif
+#if BRUME_WITH_RESOLUTION
+    uint8_t resolution, upsample;
+#endif
+#if BRUME_WITH_SPATIAL
+    uint8_t spatial;
+    uint32_t edge_falloff; /* Q16.16 */
+#endif
+#if BRUME_WITH_TEMPORAL
+    uint8_t temporal, history_bits, window, update;
+    uint8_t cell_log2[2], place[2]; /* of the lattice in the grid, its ray */
+    bool subpixel;
+    uint32_t noise_frame;     /* frames that a ray has seen */
+    uint32_t point[2];        /* Q0.16, where in the pixel */
+    uint32_t stratum, strata; /* Q0.16: jitter = stratum + strata * noise */
+    uint32_t alpha;           /* Q0.16 */
+#endif
+#if BRUME_WITH_TAA
+    uint8_t fetch, clamp;
+    uint32_t gamma; /* Q16.16 */
+    uint32_t same;  /* changes when the scene does, but for its frame */
+    struct brume_view view;
+#endif
 };
 
 /* Checks the scene, and prepares *frame to render it. The volume must outlive
@@ -437,6 +548,133 @@ unsigned brume_pixel_bytes(int pixel_format);
 int brume_render_rect(const struct brume_frame *frame, unsigned x, unsigned y,
                       unsigned w, unsigned h, int pixel_format, void *dst,
                       size_t stride);
+
+/* What a ray brings back, before the background. */
+struct brume_radiance {
+    uint32_t light;         /* Q0.16, albedo applied, 1.0 = the sun's */
+    uint32_t transmittance; /* Q0.16 */
+#if BRUME_WITH_DEPTH
+    /* Mean distance, weighted by the loss of transmittance, on a logarithmic
+     * scale: 2048 codes an octave, 0 for 2^-16 voxels and less. 65535: nothing
+     * there. 0 when the scene has no use for it. */
+    uint32_t depth;
+#endif
+};
+
+/* The two halves of brume_render_rect, for those who do something between: the
+ * w x h rays at (x, y) of the frame's lattice into `out`, rows `stride` rays
+ * apart; and rays over the background into pixels. Errors as there. */
+int brume_march_rect(const struct brume_frame *frame, unsigned x, unsigned y,
+                     unsigned w, unsigned h, struct brume_radiance *out,
+                     size_t stride);
+int brume_pack_rect(const struct brume_frame *frame,
+                    const struct brume_radiance *in, size_t in_stride,
+                    unsigned w, unsigned h, int pixel_format, void *dst,
+                    size_t stride);
+
+/// Sequences ///
+
+/* With temporal, spatial, resolution or update set, a frame has three passes,
+ * each over any cutting into rectangles, in any order and by any number of
+ * threads, one pass after the other:
+ *
+ *     brume_begin_frame(&frame, &volume, &scene);
+ *     brume_begin_state(state, &frame);
+ *     brume_trace_rect    over frame.lattice: marches, and stores
+ *     brume_resolve_rect  over frame.grid: reprojects; for taa alone
+ *     brume_show_rect     over the image: filters, upsamples, packs
+ *
+ * The state is the caller's memory. It holds no pointers: a copy of it goes on
+ * as the original would. Without `temporal` no state is needed:
+ * brume_show_rect(state = NULL) marches the rays that it needs. */
+#define BRUME_MAX_WINDOW 16
+
+/* Head of the state's memory. No user-visible fields. */
+struct brume_state {
+    uint32_t size;   /* of the memory, bytes */
+    uint32_t layout; /* what the planes were laid out for; 0: nothing */
+    uint16_t image[2];
+    uint32_t samples; /* offsets of the planes, in bytes from the head */
+    uint32_t values[2], depth[2], sums;
+    uint32_t frames; /* before this one, since the cut */
+    uint32_t same;   /* scene of the frame before */
+    uint8_t now;     /* which plane this frame writes */
+    bool at_rest;    /* the camera did not move since the frame before, */
+    bool still;      /* nor anything else */
+#if BRUME_WITH_TAA
+    struct brume_view view; /* of this frame, for the next */
+    /* The camera of the frame before: right, up, ahead; from its eye to this
+     * one's, Q18.13; and its pixels at distance 1. */
+    int32_t axes[3][3], moved[3];
+    struct brume_number focal;
+#endif
+};
+
+/* Bytes of state. `grid` and `lattice` count rays: BRUME_RAYS(width, height,
+ * resolution), and that over 1, 2 or 16 for update (rounded up: per side).
+ *
+ *   per ray of the grid    none 0, ema BRUME_EMA_BYTES, window
+ *                          BRUME_WINDOW_BYTES, taa BRUME_TAA_BYTES
+ *   per ray of the lattice none and taa 6, others 0
+ *
+ * `bits` is history_bits; `depth` is 1 when edge_falloff or
+ * BRUME_UPSAMPLE_AWARE ask for it, else 0. */
+#define BRUME_RAYS(width, height, resolution) \
+    ((uint32_t)(((width) + (1u << (resolution)) - 1u) >> (resolution)) * \
+     (((height) + (1u << (resolution)) - 1u) >> (resolution)))
+#define BRUME_EMA_BYTES(bits, depth) ((bits) / 4u + 2u * (depth))
+#define BRUME_WINDOW_BYTES(bits, window, depth) \
+    ((bits) / 4u * (window) + (bits) / 2u + 2u * (depth))
+#define BRUME_TAA_BYTES(bits) ((bits) / 2u + 4u)
+#define BRUME_SAMPLE_BYTES 6u
+#define BRUME_STATE_BYTES(grid, grid_bytes, lattice, lattice_bytes) \
+    (sizeof(struct brume_state) + 32u + (uint32_t)(grid) * (grid_bytes) + \
+     (uint32_t)(lattice) * (lattice_bytes))
+
+/* The same for a scene, exactly; 0 when it is out of range. */
+size_t brume_state_bytes(const struct brume_scene *scene);
+
+/* Makes `size` bytes, 4-byte aligned, an empty state. */
+int brume_state_init(struct brume_state *state, size_t size);
+
+/* Once a frame, before its passes. History is dropped when frame.cut says so,
+ * and when size, resolution, update or kind of history change. Returns
+ * BRUME_ERR_STATE when the memory is too small: then it is as before. */
+int brume_begin_state(struct brume_state *state,
+                      const struct brume_frame *frame);
+
+/* Marches the w x h rays at (x, y) of the lattice into the state. */
+int brume_trace_rect(const struct brume_frame *frame, struct brume_state *state,
+                     unsigned x, unsigned y, unsigned w, unsigned h);
+
+/* The same with rays that were marched by other means: rows of `in` are
+ * `stride` rays apart. */
+int brume_store_rect(const struct brume_frame *frame, struct brume_state *state,
+                     unsigned x, unsigned y, unsigned w, unsigned h,
+                     const struct brume_radiance *in, size_t stride);
+
+/* The w x h rays at (x, y) of the grid: history along the camera's motion. */
+int brume_resolve_rect(const struct brume_frame *frame,
+                       struct brume_state *state, unsigned x, unsigned y,
+                       unsigned w, unsigned h);
+
+/* The w x h pixels at (x, y) of the image, as brume_render_rect. `work` is
+ * scratch memory of brume_work_bytes(frame, w) bytes, 4-byte aligned; one for
+ * each thread. Without a state (NULL) the rays are marched here; those beyond
+ * the rectangle that its filter needs, too. */
+int brume_show_rect(const struct brume_frame *frame,
+                    const struct brume_state *state, unsigned x, unsigned y,
+                    unsigned w, unsigned h, int pixel_format, void *dst,
+                    size_t stride, void *work, size_t work_size);
+size_t brume_work_bytes(const struct brume_frame *frame, unsigned w);
+
+/* At most that many, known when compiling: with a kernel of so many taps (1
+ * for none; 13 for bilateral15, whose outermost two weigh less than half of
+ * 2^-16 and are left out), and with any. */
+#define BRUME_WORK_BYTES_OF(w, taps) \
+    (BRUME_SPAN * sizeof(struct brume_radiance) + \
+     6u * ((taps) + 2u) * ((size_t)(w) + (taps) + 1u))
+#define BRUME_WORK_BYTES(w) BRUME_WORK_BYTES_OF(w, 13u)
 
 #ifdef __cplusplus
 }

@@ -67,19 +67,40 @@ static void scale(int32_t out[3], const int32_t v[3], struct brume_number k)
     }
 }
 
+/* Bits from lattice to grid. */
+static uint32_t cell_log2(const struct brume_frame *f, int axis)
+{
+#if BRUME_WITH_TEMPORAL
+    return f->cell_log2[axis];
+#else
+    (void)f;
+    (void)axis;
+    return 0;
+#endif
+}
+
+/* The largest |u| or |v| of the lattice's rays, which may lie beyond the
+ * image: at most 31 more than `size`. */
+static uint32_t reach_of(const struct brume_frame *f, int axis, uint32_t size)
+{
+    uint32_t rays = (uint32_t)f->lattice[axis] << cell_log2(f, axis);
+    return (rays << (brume_resolution_of(f) + 1u)) - size;
+}
+
 /* The ray of a pixel, any length: with a half field of view of angle f,
  *   cos f ahead + sin f (u right + v up) / h,  u = 2x+1-w,  v = h-1-2y,
  * all divided by a bound of its length, so that it stays below 1. */
 static void project(struct brume_frame *f, const int32_t ahead[3],
                     const int32_t right[3], uint32_t fov)
 {
-    uint32_t w = f->width, h = f->height;
+    uint32_t h = f->height;
+    uint32_t across = reach_of(f, 0, f->width), down = reach_of(f, 1, h);
     int32_t sine, cosine, up[3];
     /* fov / 2 in turns: times 2^16 / 720 = 91.0222... */
     brume_sincos(fov * 91u + mul_hi_floor(fov, 95443718u), &sine, &cosine);
     uint32_t s = (uint32_t)sine, c = (uint32_t)cosine;
-    /* (c h + s h + s w) 2^14 in integers, rounded up: < 2^31 */
-    uint32_t bound = ((c >> 16) + 1u) * h + ((s >> 16) + 1u) * (h + w);
+    /* (c h + s down + s across) 2^14 in integers, rounded up: < 2^31 */
+    uint32_t bound = ((c >> 16) + 1u) * h + ((s >> 16) + 1u) * (down + across);
     struct brume_number inverse =
         brume_number_inverse(brume_number_of(bound, -14));
     struct brume_number per_pixel =
@@ -91,6 +112,17 @@ static void project(struct brume_frame *f, const int32_t ahead[3],
     scale(f->ahead, ahead, centre);
     scale(f->per_x, right, per_pixel);
     scale(f->per_y, up, per_pixel);
+#if BRUME_WITH_TAA
+    /* h / (2 tan f) */
+    f->view.focal = brume_number_mul(
+        brume_number_mul(brume_number_of(c, -31), brume_number_of(h, 0)),
+        brume_number_inverse(brume_number_of(s, -30)));
+    for (int i = 0; i < 3; i++) {
+        f->view.ahead[i] = ahead[i];
+        f->view.right[i] = right[i];
+        f->view.up[i] = up[i];
+    }
+#endif
 }
 
 /// Outline ///
@@ -163,23 +195,73 @@ int brume_camera_begin(struct brume_frame *frame,
         right_of(right, ahead, k_y);
     project(frame, ahead, right, scene->fov);
     int32_t bias = scene->filter == BRUME_TRILINEAR ? 0x80 : 0x8000;
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++) {
         frame->eye[i] = scene->eye[i] + bias;
+#if BRUME_WITH_TAA
+        frame->view.eye[i] = scene->eye[i];
+#endif
+    }
     set_outline(frame);
     return BRUME_OK;
 }
 
 /// Rays ///
 
-/* The ray of a pixel's centre, of any length. Exact: linear in x and y. */
-static void direction_of(int32_t out[3], const struct brume_frame *f,
-                         uint32_t x, uint32_t y)
+/* From a ray of the lattice to that of the grid. */
+static void grid_of(const struct brume_frame *f, uint32_t *x, uint32_t *y)
 {
-    int32_t u = (int32_t)(2u * x + 1u) - (int32_t)f->width;
-    int32_t v = (int32_t)f->height - (int32_t)(2u * y + 1u);
+#if BRUME_WITH_TEMPORAL
+    uint32_t place = f->place[0];
+    if (f->update == BRUME_CHECKER) /* rows take turns */
+        place ^= *y & 1u;
+    *x = (*x << f->cell_log2[0]) + place;
+    *y = (*y << f->cell_log2[1]) + f->place[1];
+#else
+    (void)f;
+    (void)x;
+    (void)y;
+#endif
+}
+
+/* Exact: linear in x and y. */
+void brume_grid_direction(const struct brume_frame *frame, uint32_t x,
+                          uint32_t y, int32_t out[3])
+{
+    const struct brume_frame *f = frame;
+    uint32_t r = brume_resolution_of(f);
+    int32_t u = (int32_t)((2u * x + 1u) << r) - (int32_t)f->width;
+    int32_t v = (int32_t)f->height - (int32_t)((2u * y + 1u) << r);
     for (int i = 0; i < 3; i++)
         out[i] = f->ahead[i] + u * f->per_x[i] + v * f->per_y[i];
 }
+
+#if BRUME_WITH_TEMPORAL
+/* Moves a direction by u to the right and v down, Q16.16 half pixels,
+ * |.| <= 2^18. */
+static void move_direction(int32_t d[3], const struct brume_frame *f, int32_t u,
+                           int32_t v)
+{
+    for (int i = 0; i < 3; i++)
+        d[i] += mul_both_signed_round(f->per_x[i], u * 512, 7) -
+                mul_both_signed_round(f->per_y[i], v * 512, 7);
+}
+
+/* Where in its pixel the ray (x, y) of the grid goes: the frame's point, plus
+ * two values of noise that stay the same from frame to frame. */
+static void move_in_pixel(int32_t d[3], const struct brume_frame *f, uint32_t x,
+                          uint32_t y)
+{
+    int32_t move[2];
+    for (uint32_t i = 0; i < 2; i++) {
+        uint32_t p = f->point[i];
+        if (BRUME_WITH_NOISE)
+            p += brume_noise_value(f->noise, &f->noise_table, x, y, 0, 2u + i);
+        move[i] = ((int32_t)(p & 0xffffu) - 0x8000) *
+                  (int32_t)(2u << brume_resolution_of(f));
+    }
+    move_direction(d, f, move[0], move[1]);
+}
+#endif
 
 uint32_t brume_inverse_of_move(int32_t move)
 {
@@ -271,15 +353,16 @@ static bool enter(struct brume_ray *ray, const struct brume_frame *f,
         ray->position[i] = (uint32_t)f->eye[i] + (unit[i] < 0 ? 0u - way : way);
         ray->line.move[i] = mul_signed_round(unit[i], f->step, 2);
     }
-    if (inside(f, ray->position))
-        return true;
     uint32_t tries = t_out > t ? (t_out - t) / f->step + 2u : 2u;
-    for (; !inside(f, ray->position); tries--) {
+    for (; !inside(f, ray->position); tries--, t += f->step) {
         if (tries == 0)
             return false;
         for (int i = 0; i < 3; i++)
             ray->position[i] += (uint32_t)ray->line.move[i];
     }
+#if BRUME_WITH_DEPTH
+    ray->t = t;
+#endif
     return true;
 }
 
@@ -330,24 +413,65 @@ void brume_light_begin(struct brume_light_ray *light,
 static uint32_t jitter_of(const struct brume_frame *f, uint32_t x, uint32_t y,
                           uint32_t channel)
 {
+#if BRUME_WITH_TEMPORAL
+    uint32_t frame = f->noise_frame;
+#else
+    uint32_t frame = f->frame;
+#endif
     return BRUME_WITH_NOISE && (f->jitter >> channel & 1u)
-               ? brume_noise_value(f->noise, &f->noise_table, x, y, f->frame,
+               ? brume_noise_value(f->noise, &f->noise_table, x, y, frame,
                                    channel)
                : 0;
+}
+
+/* The jitter of a view ray: within the frame's stratum of the step. */
+static uint32_t view_jitter(const struct brume_frame *f, uint32_t x, uint32_t y)
+{
+    uint32_t jitter = jitter_of(f, x, y, 0);
+#if BRUME_WITH_TEMPORAL
+    jitter = f->stratum + ((jitter * f->strata) >> 16);
+#endif
+    return jitter;
+}
+
+/* Two directions, and all between them, on the outer side of a line? */
+static bool both_outside(const struct brume_outline *o, const int32_t d[3],
+                         const int32_t e[3])
+{
+    return product_less(d[o->i], o->b, d[o->j], o->a) &&
+           product_less(e[o->i], o->b, e[o->j], o->a);
 }
 
 bool brume_rays_miss(const struct brume_frame *frame, uint32_t x, uint32_t y,
                      uint32_t n)
 {
-    int32_t d[3], e[3];
-    direction_of(d, frame, x, y);
-    direction_of(e, frame, x + n - 1u, y);
-    for (uint32_t k = 0; k < frame->outlines; k++) {
-        const struct brume_outline *o = &frame->outline[k];
-        if (product_less(d[o->i], o->b, d[o->j], o->a) &&
-            product_less(e[o->i], o->b, e[o->j], o->a))
-            return true;
+    const struct brume_frame *f = frame;
+    uint32_t last = x + n - 1u, bottom = y;
+    int32_t d[4][3];
+    grid_of(f, &x, &y);
+    grid_of(f, &last, &bottom);
+    brume_grid_direction(f, x, y, d[0]);
+    brume_grid_direction(f, last, y, d[1]);
+#if BRUME_WITH_TEMPORAL
+    if (f->subpixel) { /* the four corners of what the rays may be */
+        int32_t half = (int32_t)(0x10000u << brume_resolution_of(f));
+        for (int i = 0; i < 3; i++) {
+            d[2][i] = d[0][i];
+            d[3][i] = d[1][i];
+        }
+        move_direction(d[0], f, -half, -half);
+        move_direction(d[1], f, half, -half);
+        move_direction(d[2], f, -half, half);
+        move_direction(d[3], f, half, half);
     }
+    bool corners = f->subpixel;
+#else
+    bool corners = false;
+#endif
+    for (uint32_t k = 0; k < f->outlines; k++)
+        if (both_outside(&f->outline[k], d[0], d[1]) &&
+            (!corners || both_outside(&f->outline[k], d[2], d[3])))
+            return true;
     return false;
 }
 
@@ -357,10 +481,15 @@ bool brume_ray_begin(struct brume_ray *ray, const struct brume_frame *frame,
     const struct brume_frame *f = frame;
     int32_t unit[3];
     uint32_t t_in, t_out;
-    direction_of(unit, f, x, y);
+    grid_of(f, &x, &y);
+    brume_grid_direction(f, x, y, unit);
+#if BRUME_WITH_TEMPORAL
+    if (f->subpixel)
+        move_in_pixel(unit, f, x, y);
+#endif
     brume_normalise(unit);
     if (!clip(f, unit, &t_in, &t_out) ||
-        !enter(ray, f, unit, jitter_of(f, x, y, 0), t_in, t_out))
+        !enter(ray, f, unit, view_jitter(f, x, y), t_in, t_out))
         return false;
     for (int i = 0; i < 3; i++)
         ray->line.inverse[i] = brume_inverse_of_move(ray->line.move[i]);

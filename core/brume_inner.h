@@ -2,10 +2,13 @@
 /*
  * What the core's files share. A file calls only files above it:
  *
- *   brume_fixed   maths              brume_camera  rays
- *   brume_tables  exp, sRGB          brume_march   the march
- *   brume_noise   jitter             brume_output  pixels
- *   brume_asset   checking           brume         frames
+ *   brume_fixed   maths              brume_camera    rays
+ *   brume_tables  exp, sRGB          brume_march     the march
+ *   brume_nrooks  N-rooks sets       brume_temporal  history
+ *   brume_noise   jitter             brume_resolve   reprojection
+ *   brume_asset   checking           brume_output    pixels
+ *   brume_lattice which rays         brume_filter    space, resolution
+ *                                    brume           frames
  */
 #ifndef BRUME_INNER_H
 #define BRUME_INNER_H
@@ -56,6 +59,12 @@ extern const uint16_t brume_exp_fine[256];
  * (IEC 61966-2-1). 510 bytes. */
 extern const uint16_t brume_srgb_threshold[255];
 
+/// brume_nrooks.c (generated) ///
+
+/* N-rooks sets of 1 .. 16 points in their order of use: 16 row + column. 256
+ * bytes. */
+extern const uint8_t brume_nrooks[16][16];
+
 /// brume_noise.c ///
 
 /* J of docs/SPEC.md, Q0.16, for a pixel, frame and channel. The table is read
@@ -66,6 +75,54 @@ uint32_t brume_noise_value(int noise, const struct brume_noise_table *values,
 
 /* Is there such a noise, and has it the table that it needs? */
 bool brume_noise_usable(int noise, const struct brume_noise_table *table);
+
+/// brume_lattice.c ///
+
+/* size / 2^log2, rounded up. */
+BRUME_INLINE uint32_t brume_rays(uint32_t size, uint32_t log2)
+{
+    return (size + (1u << log2) - 1u) >> log2;
+}
+
+/* log2 of the image's pixels across a ray. */
+BRUME_INLINE uint32_t brume_resolution_of(const struct brume_frame *f)
+{
+#if BRUME_WITH_RESOLUTION
+    return f->resolution;
+#else
+    (void)f;
+    return 0;
+#endif
+}
+
+/* log2 of a cell's width (axis 0) or height, in rays of the grid. */
+BRUME_INLINE uint32_t brume_cell_log2(uint32_t update, uint32_t axis)
+{
+    return update == BRUME_BAYER4    ? 2u
+           : update == BRUME_CHECKER ? 1u - axis
+                                     : 0;
+}
+
+/* Does anything use the depth of the scene's rays? */
+BRUME_INLINE bool brume_scene_has_depth(const struct brume_scene *s)
+{
+    return s->temporal == BRUME_TAA ||
+           (s->spatial != BRUME_SPATIAL_NONE && s->edge_falloff > 0) ||
+           (s->resolution != BRUME_FULL && s->upsample == BRUME_UPSAMPLE_AWARE);
+}
+
+/* log2 of the frames after which every ray of the grid had its turn. */
+BRUME_INLINE uint32_t brume_period_log2(uint32_t update)
+{
+    return update == BRUME_CHECKER ? 1u : update == BRUME_BAYER4 ? 4u : 0u;
+}
+
+/* Checks the scene's fields of time and space. */
+int brume_lattice_check(const struct brume_scene *scene);
+
+/* Sets grid, lattice, strata and the place in the pixel, of a checked scene. */
+void brume_lattice_begin(struct brume_frame *frame,
+                         const struct brume_scene *scene);
 
 /// brume_camera.c ///
 
@@ -78,11 +135,18 @@ struct brume_ray {
     struct brume_line line;
     uint32_t count; /* samples in the pool */
     struct brume_light_ray light;
+#if BRUME_WITH_DEPTH
+    uint32_t t; /* distance of the first sample from the eye, Q16.16 */
+#endif
 };
 
 /* Basis of the camera into frame->eye, ahead, per_x and per_y. */
 int brume_camera_begin(struct brume_frame *frame,
                        const struct brume_scene *scene);
+
+/* The middle of ray (x, y) of the grid, of any length, Q1.31. */
+void brume_grid_direction(const struct brume_frame *frame, uint32_t x,
+                          uint32_t y, int32_t out[3]);
 
 /* Do the rays of all n pixels from (x, y) to the right pass the pool by? Says
  * no when in doubt. */
@@ -102,11 +166,16 @@ uint32_t brume_inverse_of_move(int32_t move);
 
 /// brume_march.c ///
 
-/* Radiance of the volume and transmittance to the background. */
-struct brume_radiance {
-    uint32_t light;         /* Q16.16, albedo applied, 1.0 = the sun's */
-    uint32_t transmittance; /* Q0.16 */
-};
+/* Depths are codes on a logarithmic scale, 2048 an octave, rounded down; 0 for
+ * distances, Q16.16, of up to 2^-16 voxels. */
+#define BRUME_NO_DEPTH 0xffffu
+BRUME_INLINE uint32_t brume_depth_code(uint32_t distance)
+{
+    uint32_t high = distance == 0 ? 0 : 31u - leading_zeros(distance);
+    uint32_t mantissa =
+        high > 11 ? distance >> (high - 11u) : distance << (11u - high);
+    return high << 11 | (mantissa & 0x7ffu);
+}
 
 /* Chooses the kernel and fills the tables of density and light. */
 int brume_march_begin(struct brume_frame *frame,
@@ -115,6 +184,94 @@ int brume_march_begin(struct brume_frame *frame,
 /* n <= BRUME_SPAN pixels from (x, y) to the right. */
 void brume_march_span(const struct brume_frame *frame, uint32_t x, uint32_t y,
                       uint32_t n, struct brume_radiance *out);
+
+/// brume_temporal.c ///
+
+/* A ray as it is kept. 65535 stands for 65536, else the values of struct
+ * brume_radiance. */
+#if defined(__GNUC__)
+struct __attribute__((__may_alias__)) brume_sample {
+#else
+struct brume_sample {
+#endif
+    uint16_t light, transmittance, depth;
+};
+
+BRUME_INLINE uint16_t sample_of(uint32_t q16)
+{
+    return (uint16_t)(q16 - (q16 >> 16));
+}
+
+BRUME_INLINE uint32_t of_sample(uint32_t code)
+{
+    return code + ((code + 1u) >> 16);
+}
+
+#if BRUME_WITH_TEMPORAL
+/* A word for all that decides on the planes but the image's size; never 0. */
+uint32_t brume_state_layout(const struct brume_frame *frame);
+
+/* Was the state begun with this frame, or one of the same planes? */
+BRUME_INLINE bool brume_state_fits(const struct brume_state *state,
+                                   const struct brume_frame *frame)
+{
+    return state->layout == brume_state_layout(frame) &&
+           state->image[0] == frame->width && state->image[1] == frame->height;
+}
+
+/* The frame's rays of the lattice, row after row. */
+BRUME_INLINE struct brume_sample *
+brume_sample_at(const struct brume_state *state, uint32_t i)
+{
+    return (struct brume_sample *)(void *)((uint8_t *)(uintptr_t)state +
+                                           state->samples) +
+           i;
+}
+
+/* Frames since ray (x, y) of the grid had its turn to be marched: 0 when it is
+ * now. */
+uint32_t brume_age_of(const struct brume_frame *frame, uint32_t x, uint32_t y);
+
+/* Number of the lattice's ray in whose cell ray (x, y) of the grid is. */
+uint32_t brume_lattice_index(const struct brume_frame *frame, uint32_t x,
+                             uint32_t y);
+
+/* Puts n rays of the lattice, from (x, y) to the right. */
+void brume_store_span(const struct brume_frame *frame,
+                      struct brume_state *state, uint32_t x, uint32_t y,
+                      uint32_t n, const struct brume_radiance *in);
+
+/* Ray number i of the grid in a plane of history, in 16 bits; depth 0 when the
+ * scene has no use for it. */
+void brume_history_get(const struct brume_frame *frame,
+                       const struct brume_state *state, uint32_t plane,
+                       uint32_t i, struct brume_sample *out);
+
+/* Writes old + alpha (in - old) as ray (x, y) of a plane, in its bits, rounded
+ * without bias. */
+void brume_history_put(const struct brume_frame *frame,
+                       struct brume_state *state, uint32_t plane, uint32_t x,
+                       uint32_t y, const struct brume_sample *old,
+                       const struct brume_sample *in, uint32_t alpha);
+
+/* n rays of the grid from (x, y), as history has them after this frame. */
+void brume_history_row(const struct brume_frame *frame,
+                       const struct brume_state *state, uint32_t x, uint32_t y,
+                       uint32_t n, struct brume_sample *out);
+#endif
+
+/// brume_resolve.c ///
+
+#if BRUME_WITH_TAA
+/* The camera's motion since the state's frame, and whether anything moved. */
+void brume_motion_begin(struct brume_state *state,
+                        const struct brume_frame *frame);
+
+/* n rays of the grid from (x, y) to the right. */
+void brume_resolve_span(const struct brume_frame *frame,
+                        struct brume_state *state, uint32_t x, uint32_t y,
+                        uint32_t n);
+#endif
 
 /// brume_output.c ///
 

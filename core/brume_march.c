@@ -194,6 +194,44 @@ BRUME_INLINE uint32_t light_sum(const struct brume_frame *f,
     return sum_log(f, light, x, y, z, *reach, k);
 }
 
+#if BRUME_WITH_DEPTH
+/* Where in the sequence of samples the light was lost: sum of lost * index,
+ * Q1.31 times 2^-20. index < 2^20, so each term is below 2^31, and the sum is,
+ * as the losses sum to 1. */
+BRUME_INLINE uint32_t moment(uint32_t lost, uint32_t index)
+{
+    return mul_hi_floor(lost, index << 12);
+}
+
+/* The code of a mean distance: t + step * moment / lost. Below 2^17 voxels;
+ * from 2^16 - 2^3 on the largest code stands for all. */
+static uint32_t depth_of(const struct brume_frame *f, uint32_t t,
+                         uint32_t moment, uint32_t lost)
+{
+    if (lost == 0)
+        return BRUME_NO_DEPTH;
+    struct brume_number way =
+        brume_number_mul(brume_number_of(moment, 20),
+                         brume_number_inverse(brume_number_of(lost, 0)));
+    way = brume_number_mul(way, brume_number_of(f->step, 0));
+    const uint32_t cap = 0xffdfffffu; /* of code 65534 */
+    uint32_t further = brume_number_floor(way, 0);
+    return brume_depth_code(t < cap && further < cap - t ? t + further : cap);
+}
+#endif
+
+/* One for all kernels. */
+static void finish(const struct brume_frame *f, uint32_t light,
+                   uint32_t transmittance, struct brume_radiance *out)
+{
+    /* Q31 * Q18 -> Q17 -> Q16 */
+    out->light = (mul_hi_floor(light << 2, f->albedo << 2) + 1u) >> 1;
+    out->transmittance = (transmittance + 0x4000u) >> 15;
+#if BRUME_WITH_DEPTH
+    out->depth = 0;
+#endif
+}
+
 BRUME_INLINE void march(const struct brume_frame *f,
                         const struct brume_ray *ray, struct brume_radiance *out,
                         struct kernel k)
@@ -203,6 +241,9 @@ BRUME_INLINE void march(const struct brume_frame *f,
     uint32_t transmittance = 1u << 31; /* Q1.31 */
     uint32_t light = 0;                /* Q3.29, <= 1 */
     uint32_t left = ray->count, reach = 0, m, d;
+#if BRUME_WITH_DEPTH
+    uint32_t where = 0;
+#endif
     BRUME_TALLY(rays_in_pool, 1);
     for (;;) {
         m = 1;
@@ -215,6 +256,9 @@ BRUME_INLINE void march(const struct brume_frame *f,
             uint32_t lost = mul_hi_floor(transmittance, opacity(f, d, k));
             light += mul_hi_floor(lost, sun_transmittance(f, sum));
             transmittance -= lost;
+#if BRUME_WITH_DEPTH
+            where += moment(lost, ray->count - left);
+#endif
             if (transmittance < f->min_transmittance)
                 break;
         }
@@ -225,9 +269,11 @@ BRUME_INLINE void march(const struct brume_frame *f,
         y += m * (uint32_t)line->move[1];
         z += m * (uint32_t)line->move[2];
     }
-    /* Q31 * Q18 -> Q17 -> Q16 */
-    out->light = (mul_hi_floor(light << 2, f->albedo << 2) + 1u) >> 1;
-    out->transmittance = (transmittance + 0x4000u) >> 15;
+    finish(f, light, transmittance, out);
+#if BRUME_WITH_DEPTH
+    if (f->depth)
+        out->depth = depth_of(f, ray->t, where, (1u << 31) - transmittance);
+#endif
 }
 
 /* Rays are told to miss in groups of eight: fewer cost as much to tell as to
@@ -237,8 +283,12 @@ BRUME_INLINE void march(const struct brume_frame *f,
 BRUME_INLINE void span(const struct brume_frame *f, uint32_t x, uint32_t y,
                        uint32_t n, struct brume_radiance *out, struct kernel k)
 {
-    static const struct brume_radiance k_clear = {0, 0x10000u};
+    struct brume_radiance clear = {0};
     bool miss = false;
+    clear.transmittance = 0x10000u;
+#if BRUME_WITH_DEPTH
+    clear.depth = f->depth ? BRUME_NO_DEPTH : 0;
+#endif
     for (uint32_t i = 0; i < n; i++) {
         struct brume_ray ray;
         if (i % RAY_GROUP == 0)
@@ -247,7 +297,7 @@ BRUME_INLINE void span(const struct brume_frame *f, uint32_t x, uint32_t y,
         if (!miss && brume_ray_begin(&ray, f, x + i, y))
             march(f, &ray, &out[i], k);
         else
-            out[i] = k_clear;
+            out[i] = clear;
     }
 }
 

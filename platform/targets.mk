@@ -12,13 +12,16 @@ demo: $(T)/demo.elf ## (with CONF=name, ASSET=file.brume) run a board's demo
 
 # Targets: a test program for CONF, in the folder TARGET (a variant's name). The
 # file ASSETS lists what is linked in; TARGET_CONFIG is a BRUME_CONFIG header.
+# TARGET_STATE_BYTES: of memory for sequences, 0 to leave them out.
 TARGET_SIZE ?= size
+TARGET_STATE_BYTES ?= 98304
 TARGET_OBJ = $(patsubst %.c,$(T)/%.o,$(wildcard core/*.c) $(TARGET_SRC) \
 	tests/targets/targets.c tests/support/scenes.c) \
 	$(patsubst %.S,$(T)/%.o,$(TARGET_ASSETS_SRC))
 TARGET_CPPFLAGS = $(CPPFLAGS) -Iplatform -Itests $(TARGET_DEFINES) \
 	$(if $(TARGET_CONFIG),-DBRUME_CONFIG='"targets/$(TARGET_CONFIG).h"') \
-	$(if $(TARGET_PIXELS_MAX),-DTARGET_PIXELS_MAX=$(TARGET_PIXELS_MAX))
+	$(if $(TARGET_PIXELS_MAX),-DTARGET_PIXELS_MAX=$(TARGET_PIXELS_MAX)) \
+	-DTARGET_STATE_BYTES=$(TARGET_STATE_BYTES)
 ifeq ($(findstring clang,$(CC)),)
 STACK_USAGE = -fstack-usage -fcallgraph-info=su
 endif

@@ -14,39 +14,17 @@
 
 #include "support/volumes.h"
 
-/* The pixels of a frame, or NULL and *error. */
-static uint8_t *rendered(const struct brume_frame *frame, int format,
-                         size_t *size, int *error)
-{
-    size_t stride = (size_t)frame->width * (format == BRUME_L8 ? 1 : 3);
-    *size = stride * frame->height;
-    uint8_t *pixels = malloc(*size);
-    if (pixels == NULL)
-        abort();
-    *error = brume_render_rect(frame, 0, 0, frame->width, frame->height, format,
-                               pixels, stride);
-    if (*error == BRUME_OK)
-        return pixels;
-    free(pixels);
-    return NULL;
-}
-
 static void print_scene(const struct test_volumes *volumes,
                         const struct test_scene *t, int format)
 {
     const struct brume_volume *v = test_volume_of(volumes, t);
-    static struct brume_frame frame;
-    struct brume_scene scene;
     if (v == NULL) {
         printf("%s absent\n", t->name);
         return;
     }
-    test_scene_fill(&scene, t, v);
-    size_t size = 0;
-    uint8_t *pixels = NULL;
-    int error = brume_begin_frame(&frame, v, &scene);
-    if (!error)
-        pixels = rendered(&frame, format, &size, &error);
+    int error;
+    uint8_t *pixels = test_scene_render(t, v, format, &error);
+    size_t size = (size_t)t->width * t->height * brume_pixel_bytes(format);
     /* A configuration may allow only small frames or few samples. */
     bool feature = error == BRUME_ERR_FEATURE ||
                    (error == BRUME_ERR_SIZE && t->width > BRUME_MAX_SIZE) ||

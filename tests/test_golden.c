@@ -53,6 +53,17 @@ static void render(struct image *image, const struct test_scene *t,
     struct brume_scene scene;
     struct brume_frame frame;
     char err[200];
+    if (t->sequence != NULL) {
+        int error;
+        if (image_new_u8(image, t->width, t->height, 3, err, sizeof err) != 0)
+            abort();
+        uint8_t *pixels = test_scene_render(t, v, BRUME_RGB888, &error);
+        if (pixels == NULL)
+            abort();
+        memcpy(image->u8, pixels, image_samples(image));
+        free(pixels);
+        return;
+    }
     test_scene_fill(&scene, t, v);
     if (brume_begin_frame(&frame, v, &scene) != BRUME_OK ||
         image_new_u8(image, t->width, t->height, 3, err, sizeof err) != 0)

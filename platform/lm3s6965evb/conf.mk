@@ -4,6 +4,7 @@ TARGET_CPU = cortex-m3
 TARGET_FLASH = 262144
 TARGET_RAM = 65536
 TARGET_ASSETS_MAX = 204800
+TARGET_STATE_BYTES = 0
 include platform/cortexm/cortexm.mk
 DEMO_SRC = platform/lm3s6965evb/demo.c platform/lm3s6965evb/oled.c \
 	platform/demo/demo.c

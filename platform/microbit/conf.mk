@@ -4,6 +4,7 @@ TARGET_CPU = cortex-m0
 TARGET_FLASH = 262144
 TARGET_RAM = 16384
 TARGET_ASSETS_MAX = 204800
+TARGET_STATE_BYTES = 0
 include platform/cortexm/cortexm.mk
 DEMO_SRC = platform/microbit/demo.c platform/demo/demo.c
 DEMO_CLOUD = --size 112

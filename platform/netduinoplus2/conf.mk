@@ -4,6 +4,7 @@ TARGET_CPU = cortex-m4
 TARGET_FLASH = 1048576
 TARGET_RAM = 131072
 TARGET_ASSETS_MAX = 983040
+TARGET_STATE_BYTES = 57344
 include platform/cortexm/cortexm.mk
 DEMO_SRC = platform/netduinoplus2/demo.c platform/demo/demo.c
 DEMO_CLOUD = --size 160

@@ -123,11 +123,12 @@ int noise_nrooks_write(FILE *out, const char *command)
         "/* N-rooks sets of 1 .. 16 points, in their order of use: 16 row + "
         "column.\n"
         " * 256 bytes. */\n"
-        "#include <stdint.h>\n\n"
+        "#include \"brume_inner.h\"\n\n"
+        "#if BRUME_WITH_TEMPORAL\n"
         "const uint8_t brume_nrooks[16][16] = {\n",
         command);
     for (uint32_t n = 1; n <= NROOKS_MAX; n++)
         write_set(out, n);
-    fprintf(out, "};\n");
+    fprintf(out, "};\n#endif\n");
     return ferror(out) ? -1 : 0;
 }

@@ -23,79 +23,91 @@ static const struct brume_noise_table k_noise_table = {k_noise, 3, 3, 1, 4};
 #define BLOCK(name, noise) \
     { \
         name, "block_u8", 160, 120, NEAR, BRUME_LOG, 6, J_BOTH, noise, \
-            2 * ONE, 5, VIEW_FRONT, false, false \
+            2 * ONE, 5, VIEW_FRONT, false, false, NULL \
+    }
+
+/* A sequence on the same volume. Frames are numbered from 15 on: the turns of
+ * Bayer's order begin anew in the second. */
+#define SEQUENCE(name, ...) \
+    { \
+        name, "block_u8", 64, 48, NEAR, BRUME_LOG, 4, J_BOTH, \
+            BRUME_NOISE_RANK1, 2 * ONE, 15, VIEW_FRONT, false, false, \
+            &(const struct test_sequence) \
+        { \
+            __VA_ARGS__ \
+        } \
     }
 
 const struct test_scene test_scenes[] = {
     /* name, volume, size, lookup, light, n, jitter, noise, step, frame, view,
      * clamp, small */
     {"block_u8", "block_u8", 320, 240, NEAR, BRUME_LOG, 6, J_NONE, 0, ONE, 0,
-     VIEW_FRONT, false, false},
+     VIEW_FRONT, false, false, NULL},
     {"cloud_u8", "cloud_u8", 640, 480, NEAR, BRUME_LOG, 10, J_NONE, 0, ONE, 0,
-     VIEW_FRONT, false, false},
+     VIEW_FRONT, false, false, NULL},
     {"white", "cloud_u8", 320, 240, NEAR, BRUME_LOG, 8, J_BOTH,
-     BRUME_NOISE_WHITE, 2 * ONE, 7, VIEW_FRONT, false, false},
+     BRUME_NOISE_WHITE, 2 * ONE, 7, VIEW_FRONT, false, false, NULL},
     {"ign", "cloud_u8", 320, 240, NEAR, BRUME_LOG, 8, J_PRIM, BRUME_NOISE_IGN,
-     3 * ONE, 65, VIEW_FRONT, false, false},
+     3 * ONE, 65, VIEW_FRONT, false, false, NULL},
     {"bayer8", "cloud_u8", 320, 240, NEAR, BRUME_LOG, 8, J_LIGHT,
-     BRUME_NOISE_BAYER8, ONE + ONE / 3, 1, VIEW_SUN, false, false},
+     BRUME_NOISE_BAYER8, ONE + ONE / 3, 1, VIEW_SUN, false, false, NULL},
     {"trilinear_u8", "cloud_u8", 320, 240, TRI, BRUME_LOG, 8, J_NONE, 0, ONE, 0,
-     VIEW_FRONT, false, false},
+     VIEW_FRONT, false, false, NULL},
     {"trilinear_u8_apron", "cloud_u8_apron", 320, 240, TRI, BRUME_LOG, 8,
-     J_NONE, 0, ONE, 0, VIEW_FRONT, false, false},
+     J_NONE, 0, ONE, 0, VIEW_FRONT, false, false, NULL},
     {"cloud_u8r", "cloud_u8r", 320, 240, NEAR, BRUME_LOG, 8, J_NONE, 0, ONE, 0,
-     VIEW_FRONT, false, false},
+     VIEW_FRONT, false, false, NULL},
     {"uniform_u8r", "cloud_u8r", 200, 150, TRI, BRUME_UNIFORM, 40, J_PRIM,
-     BRUME_NOISE_IGN, ONE, 3, VIEW_FRONT, false, false},
+     BRUME_NOISE_IGN, ONE, 3, VIEW_FRONT, false, false, NULL},
     {"cloud_u4r", "cloud_u4r", 320, 240, NEAR, BRUME_LOG, 8, J_NONE, 0, ONE, 0,
-     VIEW_FRONT, false, false},
+     VIEW_FRONT, false, false, NULL},
     {"clamp_u4r_apron", "cloud_u4r_apron", 160, 120, TRI, BRUME_LOG, 8, J_NONE,
-     0, ONE, 0, VIEW_FRONT, true, false},
+     0, ONE, 0, VIEW_FRONT, true, false, NULL},
     {"clamp_u8", "cloud_u8", 320, 240, NEAR, BRUME_UNIFORM, 40, J_NONE, 0, ONE,
-     0, VIEW_FRONT, true, false},
+     0, VIEW_FRONT, true, false, NULL},
     {"inside", "cloud_u8r_apron", 320, 240, TRI, BRUME_LOG, 8, J_BOTH,
-     BRUME_NOISE_WHITE, ONE / 2, 0, VIEW_INSIDE, false, false},
+     BRUME_NOISE_WHITE, ONE / 2, 0, VIEW_INSIDE, false, false, NULL},
     {"grazing", "cloud_u8", 320, 240, NEAR, BRUME_LOG, 8, J_NONE, 0, ONE, 0,
-     VIEW_GRAZING, false, false},
+     VIEW_GRAZING, false, false, NULL},
     {"far", "cloud_u8", 161, 97, NEAR, BRUME_LOG, 16, J_PRIM, BRUME_NOISE_IGN,
-     16 * ONE, 0, VIEW_FAR, false, false},
+     16 * ONE, 0, VIEW_FAR, false, false, NULL},
     {"top", "cloud_u4r", 97, 161, NEAR, BRUME_NO_LIGHT, 0, J_PRIM,
-     BRUME_NOISE_BAYER8, 4 * ONE, 0, VIEW_TOP, false, false},
+     BRUME_NOISE_BAYER8, 4 * ONE, 0, VIEW_TOP, false, false, NULL},
     {"hd_nearest", "cloud_u8", 1920, 1080, NEAR, BRUME_LOG, 8, J_PRIM,
-     BRUME_NOISE_IGN, 2 * ONE, 0, VIEW_FRONT, false, false},
+     BRUME_NOISE_IGN, 2 * ONE, 0, VIEW_FRONT, false, false, NULL},
     {"hd_trilinear", "cloud_u8r_apron", 1920, 1080, TRI, BRUME_LOG, 6, J_BOTH,
-     BRUME_NOISE_BAYER8, 3 * ONE, 0, VIEW_FRONT, false, false},
+     BRUME_NOISE_BAYER8, 3 * ONE, 0, VIEW_FRONT, false, false, NULL},
     {"small_cloud", "cloud_u8", 128, 96, NEAR, BRUME_LOG, 8, J_NONE, 0, ONE, 0,
-     VIEW_FRONT, false, true},
+     VIEW_FRONT, false, true, NULL},
     {"small_trilinear", "cloud_u8r", 128, 96, TRI, BRUME_UNIFORM, 40, J_NONE, 0,
-     ONE, 0, VIEW_FRONT, false, true},
+     ONE, 0, VIEW_FRONT, false, true, NULL},
     {"small_jitter", "cloud_u8", 128, 96, NEAR, BRUME_LOG, 8, J_BOTH,
-     BRUME_NOISE_IGN, 4 * ONE, 0, VIEW_FRONT, false, true},
+     BRUME_NOISE_IGN, 4 * ONE, 0, VIEW_FRONT, false, true, NULL},
     {"small_u4r", "cloud_u4r_apron", 128, 96, TRI, BRUME_LOG, 8, J_NONE, 0, ONE,
-     0, VIEW_SUN, false, true},
+     0, VIEW_SUN, false, true, NULL},
     {"disney", "wdas_u8", 960, 540, NEAR, BRUME_LOG, 10, J_NONE, 0, ONE, 0,
-     VIEW_FRONT, false, false},
+     VIEW_FRONT, false, false, NULL},
     {"disney_hd", "wdas_u8", 1920, 1080, TRI, BRUME_LOG, 10, J_BOTH,
-     BRUME_NOISE_IGN, 2 * ONE, 0, VIEW_FRONT, false, false},
+     BRUME_NOISE_IGN, 2 * ONE, 0, VIEW_FRONT, false, false, NULL},
     {"smoke", "smoke_u8r", 960, 540, NEAR, BRUME_LOG, 10, J_PRIM,
-     BRUME_NOISE_WHITE, ONE, 0, VIEW_FRONT, false, false},
+     BRUME_NOISE_WHITE, ONE, 0, VIEW_FRONT, false, false, NULL},
     {"smoke_u4r", "smoke_u4r", 320, 240, NEAR, BRUME_LOG, 10, J_NONE, 0, ONE, 0,
-     VIEW_FRONT, false, false},
+     VIEW_FRONT, false, false, NULL},
     /* For targets, where the largest frames are too slow: */
     {"disney_160", "wdas_u8", 160, 120, NEAR, BRUME_LOG, 10, J_NONE, 0, ONE, 0,
-     VIEW_FRONT, false, false},
+     VIEW_FRONT, false, false, NULL},
     {"disney_160_unlit", "wdas_u8", 160, 120, NEAR, BRUME_NO_LIGHT, 0, J_NONE,
-     0, ONE, 0, VIEW_FRONT, false, false},
+     0, ONE, 0, VIEW_FRONT, false, false, NULL},
     {"disney_320", "wdas_u8", 320, 240, NEAR, BRUME_LOG, 10, J_NONE, 0, ONE, 0,
-     VIEW_FRONT, false, false},
+     VIEW_FRONT, false, false, NULL},
     {"disney_u4r", "wdas_u4r", 160, 120, NEAR, BRUME_LOG, 10, J_NONE, 0, ONE, 0,
-     VIEW_FRONT, false, false},
+     VIEW_FRONT, false, false, NULL},
     {"disney_u4r_unlit", "wdas_u4r", 160, 120, NEAR, BRUME_NO_LIGHT, 0, J_NONE,
-     0, ONE, 0, VIEW_FRONT, false, false},
+     0, ONE, 0, VIEW_FRONT, false, false, NULL},
     {"disney_lod1", "wdas1_u8", 160, 120, NEAR, BRUME_LOG, 10, J_NONE, 0, ONE,
-     0, VIEW_FRONT, false, false},
+     0, VIEW_FRONT, false, false, NULL},
     {"disney_lod1_unlit", "wdas1_u8", 160, 120, NEAR, BRUME_NO_LIGHT, 0, J_NONE,
-     0, ONE, 0, VIEW_FRONT, false, false},
+     0, ONE, 0, VIEW_FRONT, false, false, NULL},
     BLOCK("block_none", BRUME_NOISE_NONE),
     BLOCK("block_white", BRUME_NOISE_WHITE),
     BLOCK("block_ign", BRUME_NOISE_IGN),
@@ -107,6 +119,43 @@ const struct test_scene test_scenes[] = {
     BLOCK("block_table", BRUME_NOISE_TABLE),
     BLOCK("block_table_golden", BRUME_NOISE_TABLE_GOLDEN),
     BLOCK("block_table_r2", BRUME_NOISE_TABLE_R2),
+    /* frames, temporal, bits, window, fetch, clamp, spatial, resolution,
+     * update, upsample, sub-pixel, falloff, move */
+    SEQUENCE("seq_none", 1, 0, 16, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0),
+    SEQUENCE("seq_ema", 3, BRUME_EMA, 16, 0, 0, 0, 0, 0, 0, 0, 0, 0, 4),
+    SEQUENCE("seq_ema8", 3, BRUME_EMA, 8, 0, 0, 0, 0, 0, 0, 0, 1, 0, 4),
+    SEQUENCE("seq_window", 5, BRUME_WINDOW, 16, 3, 0, 0, 0, 0, 0, 0, 1, 0, 4),
+    SEQUENCE("seq_window8", 5, BRUME_WINDOW, 8, 4, 0, 0, 0, 0, 0, 0, 1, 0, 4),
+    SEQUENCE("seq_taa", 3, BRUME_TAA, 16, 0, BRUME_FETCH_CATMULL_ROM,
+             BRUME_CLAMP_VARIANCE, 0, 0, 0, 0, 1, 0, 4),
+    SEQUENCE("seq_taa_linear", 3, BRUME_TAA, 8, 0, BRUME_FETCH_BILINEAR,
+             BRUME_CLAMP_MINMAX, 0, 0, 0, 0, 0, 0, 4),
+    SEQUENCE("seq_taa_still", 3, BRUME_TAA, 16, 0, BRUME_FETCH_CATMULL_ROM,
+             BRUME_CLAMP_VARIANCE, 0, 0, 0, 0, 1, 0, 0),
+    SEQUENCE("seq_checker", 4, BRUME_EMA, 16, 0, 0, 0, 0, 0, BRUME_CHECKER, 0,
+             0, 0, 4),
+    SEQUENCE("seq_bayer", 18, BRUME_TAA, 16, 0, BRUME_FETCH_CATMULL_ROM,
+             BRUME_CLAMP_VARIANCE, 0, 0, BRUME_BAYER4, 0, 0, 0, 1),
+    SEQUENCE("seq_half", 1, 0, 16, 0, 0, 0, 0, BRUME_HALF, 0,
+             BRUME_UPSAMPLE_BILINEAR, 0, 0, 0),
+    SEQUENCE("seq_half_aware", 2, BRUME_TAA, 16, 0, BRUME_FETCH_BILINEAR,
+             BRUME_CLAMP_VARIANCE, BRUME_BINOMIAL3, BRUME_HALF, 0,
+             BRUME_UPSAMPLE_AWARE, 1, 8 * ONE, 4),
+    SEQUENCE("seq_quarter", 1, 0, 16, 0, 0, 0, 0, BRUME_QUARTER, 0,
+             BRUME_UPSAMPLE_AWARE, 0, 0, 0),
+    SEQUENCE("seq_box3", 1, 0, 16, 0, 0, 0, BRUME_BOX3, 0, 0, 0, 0, 0, 0),
+    SEQUENCE("seq_box5", 1, 0, 16, 0, 0, 0, BRUME_BOX5, 0, 0, 0, 0, 0, 0),
+    SEQUENCE("seq_gauss1", 1, 0, 16, 0, 0, 0, BRUME_GAUSS1, 0, 0, 0, 0, 0, 0),
+    SEQUENCE("seq_binomial3", 1, 0, 16, 0, 0, 0, BRUME_BINOMIAL3, 0, 0, 0, 0, 0,
+             0),
+    SEQUENCE("seq_binomial5", 1, 0, 16, 0, 0, 0, BRUME_BINOMIAL5, 0, 0, 0, 0, 0,
+             0),
+    SEQUENCE("seq_gauss15", 1, 0, 16, 0, 0, 0, BRUME_BILATERAL15, 0, 0, 0, 0, 0,
+             0),
+    SEQUENCE("seq_bilateral15", 1, 0, 16, 0, 0, 0, BRUME_BILATERAL15, 0, 0, 0,
+             0, 16 * ONE, 0),
+    SEQUENCE("seq_gauss1_edge", 1, 0, 16, 0, 0, 0, BRUME_GAUSS1, 0, 0, 0, 0,
+             16 * ONE, 0),
 };
 
 const int test_scene_count = sizeof test_scenes / sizeof test_scenes[0];
@@ -180,6 +229,36 @@ void test_scene_fill(struct brume_scene *out, const struct test_scene *scene,
     s->noise_table = &k_noise_table;
     s->output = BRUME_SRGB;
     s->skip = true;
+}
+
+unsigned test_scene_frames(const struct test_scene *scene)
+{
+    return scene->sequence == NULL ? 1 : scene->sequence->frames;
+}
+
+void test_scene_frame(struct brume_scene *out, const struct test_scene *scene,
+                      const struct brume_volume *volume, unsigned frame)
+{
+    const struct test_sequence *q = scene->sequence;
+    test_scene_fill(out, scene, volume);
+    if (q == NULL)
+        return;
+    out->frame += frame;
+    out->eye[0] += (int32_t)frame * q->move * 256 *
+                   (volume->box_max[0] - volume->box_min[0] + 1);
+    out->temporal = q->temporal;
+    out->history_bits = q->history_bits;
+    out->window = q->window;
+    out->fetch = q->fetch;
+    out->clamp = q->clamp;
+    out->spatial = q->spatial;
+    out->resolution = q->resolution;
+    out->update = q->update;
+    out->upsample = q->upsample;
+    out->subpixel = q->subpixel;
+    out->edge_falloff = q->edge_falloff;
+    out->alpha = 6554;
+    out->gamma = ONE;
 }
 
 uint32_t test_crc32_more(uint32_t crc, const void *data, size_t size)

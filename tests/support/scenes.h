@@ -10,6 +10,16 @@
 
 #include "brume.h"
 
+/* What a scene adds to the frames' own rays. Its picture is the last of its
+ * frames; the camera moves from frame to frame. */
+struct test_sequence {
+    uint8_t frames, temporal, history_bits, window;
+    uint8_t fetch, clamp, spatial, resolution, update, upsample;
+    bool subpixel;
+    uint32_t edge_falloff; /* Q16.16 */
+    int32_t move;          /* of the eye per frame, in 1/256 of the box */
+};
+
 struct test_scene {
     const char *name;
     const char *volume; /* of test_volume, or of a file */
@@ -19,9 +29,10 @@ struct test_scene {
     uint8_t jitter, noise;
     uint32_t step; /* Q16.16 */
     uint32_t frame;
-    uint8_t view; /* enum test_view */
-    bool clamp;   /* max_density at half the volume's */
-    bool small;   /* kept as a picture too */
+    uint8_t view;                         /* enum test_view */
+    bool clamp;                           /* max_density at half the volume's */
+    bool small;                           /* kept as a picture too */
+    const struct test_sequence *sequence; /* or NULL: one frame by itself */
 };
 
 enum test_view {
@@ -40,6 +51,11 @@ extern const int test_scene_count;
  * core's defaults. */
 void test_scene_fill(struct brume_scene *out, const struct test_scene *scene,
                      const struct brume_volume *volume);
+
+/* How many frames it has, and the core's scene of one of them. */
+unsigned test_scene_frames(const struct test_scene *scene);
+void test_scene_frame(struct brume_scene *out, const struct test_scene *scene,
+                      const struct brume_volume *volume, unsigned frame);
 
 /* CRC-32 of bytes, from 0. */
 uint32_t test_crc32(const void *data, size_t size);

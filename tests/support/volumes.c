@@ -100,3 +100,67 @@ const struct brume_volume *test_volume_of(const struct test_volumes *volumes,
             return &volumes->item[i].volume;
     return NULL;
 }
+
+/* The passes of one frame. */
+static int draw(struct brume_frame *f, struct brume_state *state,
+                int pixel_format, uint8_t *dst, bool plain)
+{
+    size_t stride = (size_t)f->width * brume_pixel_bytes(pixel_format);
+    if (plain)
+        return brume_render_rect(f, 0, 0, f->width, f->height, pixel_format,
+                                 dst, stride);
+#if BRUME_WITH_SEQUENCES
+    size_t work_size = brume_work_bytes(f, f->width);
+    void *work = malloc(work_size);
+    int error = brume_begin_state(state, f);
+    if (!error)
+        error = brume_trace_rect(f, state, 0, 0, f->lattice[0], f->lattice[1]);
+    if (!error)
+        error = brume_resolve_rect(f, state, 0, 0, f->grid[0], f->grid[1]);
+    if (!error)
+        error = brume_show_rect(f, state, 0, 0, f->width, f->height,
+                                pixel_format, dst, stride, work, work_size);
+    free(work);
+    return error;
+#else
+    (void)state;
+    return BRUME_ERR_FEATURE;
+#endif
+}
+
+uint8_t *test_scene_render(const struct test_scene *scene,
+                           const struct brume_volume *volume, int pixel_format,
+                           int *error)
+{
+    static struct brume_frame frame;
+    const struct test_scene *t = scene;
+    struct brume_scene s;
+    struct brume_state *state = NULL;
+    size_t size =
+        (size_t)t->width * t->height * brume_pixel_bytes(pixel_format);
+    uint8_t *pixels = malloc(size);
+    if (pixels == NULL)
+        abort();
+    *error = BRUME_OK;
+#if BRUME_WITH_SEQUENCES
+    test_scene_frame(&s, t, volume, 0);
+    size_t bytes = brume_state_bytes(&s);
+    state = malloc(bytes > sizeof *state ? bytes : sizeof *state);
+    if (state == NULL)
+        abort();
+    if (bytes > 0)
+        *error = brume_state_init(state, bytes);
+#endif
+    for (unsigned i = 0; i < test_scene_frames(t) && *error == BRUME_OK; i++) {
+        test_scene_frame(&s, t, volume, i);
+        *error = brume_begin_frame(&frame, volume, &s);
+        if (*error == BRUME_OK)
+            *error =
+                draw(&frame, state, pixel_format, pixels, t->sequence == NULL);
+    }
+    free(state);
+    if (*error == BRUME_OK)
+        return pixels;
+    free(pixels);
+    return NULL;
+}

@@ -29,4 +29,10 @@ void test_volumes_free(struct test_volumes *volumes);
 const struct brume_volume *test_volume_of(const struct test_volumes *volumes,
                                           const struct test_scene *scene);
 
+/* The pixels of the last of a scene's frames, by the core's own functions and
+ * in a malloc of width * height * bytes; or NULL and *error. */
+uint8_t *test_scene_render(const struct test_scene *scene,
+                           const struct brume_volume *volume, int pixel_format,
+                           int *error);
+
 #endif

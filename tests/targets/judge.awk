@@ -38,6 +38,10 @@ $1 == "scene" {
         size_of[$2] = $4
     }
 }
+$1 == "passes" {
+    for (i = 1; i <= 4; i++)
+        passes[target, $2, i] = $(i + 2)
+}
 $1 == "tally" {
     view[$2] = $3
     light[$2] = $5
@@ -95,7 +99,8 @@ function letters(t, text, i) {
     return text == "" ? "-" : text
 }
 function letter(i) {
-    return substr("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ", i, 1)
+    return substr("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ", \
+        (i - 1) % 52 + 1, 1) (i > 52 ? "'" : "")
 }
 function or_dash(text) {
     return text == "" || text == 0 ? "-" : text
@@ -119,6 +124,33 @@ function demo_table(i, t, size) {
         print "| " text " | " size[1] " | " size[2] " | " size[4] " | " \
             size[3] " | " number_before(demo[t], "bytes of stack") " | " \
             size[5] " | " number_before(demo[t], "instructions") " |"
+    }
+}
+
+# Instructions per pixel of each pass of the sequences, beyond those of the
+# same rays without: on one target of each kind.
+function pass_table(i, s, t, size, pixels, n, name) {
+    n = split("mps2-an386 mps2-an386-Os mps2-m0 mps2-m0-Os", name, " ")
+    print ""
+    print "| passes, instructions per pixel | " name[1] " | " name[2] " | " \
+        name[3] " | " name[4] " |"
+    print "|---|---|---|---|---|"
+    for (i = 1; i <= scene_count; i++) {
+        s = scenes[i]
+        if (!((name[1], s, 1) in passes))
+            continue
+        split(size_of[s], size, "x")
+        pixels = size[1] * size[2]
+        printf "| %s", s
+        for (t = 1; t <= n; t++)
+            if ((name[t], s, 1) in passes)
+                printf " | %.0f + %.0f + %.0f", \
+                    passes[name[t], s, 2] / pixels, \
+                    passes[name[t], s, 3] / pixels, \
+                    passes[name[t], s, 4] / pixels
+            else
+                printf " | -"
+        print " |"
     }
 }
 
@@ -151,6 +183,7 @@ function table(i, t, s) {
             hash["reference", s] " | " or_dash(rays[s]) " | " \
             or_dash(view[s]) " | " or_dash(light[s]) " |"
     }
+    pass_table()
     demo_table()
 }
 

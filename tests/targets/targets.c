@@ -5,6 +5,7 @@
  *
  *   open VOLUME INSTRUCTIONS
  *   scene NAME HASH WIDTHxHEIGHT INSTRUCTIONS BEGIN_INSTRUCTIONS
+ *   passes NAME BEGIN TRACE RESOLVE SHOW
  *   tally NAME VIEW_SAMPLES LIT_SAMPLES LIGHT_SAMPLES RAYS_IN_POOL
  *   feature NAME      compiled out
  *   error NAME TEXT   then the exit status is 1
@@ -12,9 +13,12 @@
  *
  * The hash is the CRC-32 of RGB888 bytes in the order of rows, so it is that of
  * a whole frame. INSTRUCTIONS are those of brume_render_rect alone, and
- * BEGIN_INSTRUCTIONS those of brume_begin_frame. Freestanding.
+ * BEGIN_INSTRUCTIONS those of brume_begin_frame. Of a scene with a sequence
+ * they are sums over the last frame's passes, which `passes` has one by one:
+ * BEGIN is brume_begin_state. Freestanding.
  *
- * TARGET_PIXELS_MAX leaves out larger frames, for slow emulators. With
+ * TARGET_PIXELS_MAX leaves out larger frames, for slow emulators; sequences
+ * need TARGET_STATE_BYTES of memory beside. With
  * TARGET_TALLY (and BRUME_CONFIG="targets/tally.h") lookups are counted.
  */
 #include "target.h"
@@ -25,6 +29,10 @@
 #define TARGET_PIXELS_MAX 76800 /* 320x240 */
 #endif
 #define BUFFER_BYTES 2880 /* three rows of 320 pixels */
+#ifndef TARGET_STATE_BYTES
+#define TARGET_STATE_BYTES 0
+#endif
+#define SEQUENCES (TARGET_STATE_BYTES > 0 && BRUME_WITH_SEQUENCES)
 
 static struct brume_volume s_volume;
 static const char *s_volume_name; /* of s_volume, or NULL */
@@ -32,6 +40,12 @@ static struct brume_frame s_frame;
 static struct brume_scene s_scene;
 static uint8_t s_buffer[BUFFER_BYTES];
 static uint32_t s_stack_used; /* at most, in bytes */
+
+#if SEQUENCES
+static uint32_t s_state[TARGET_STATE_BYTES / 4];
+static uint32_t s_work[BRUME_WORK_BYTES(64) / 4 + 1];
+static uint8_t s_pixels[64 * 48 * 3];
+#endif
 
 #ifdef TARGET_TALLY
 uint64_t tally_view_samples, tally_lit_samples, tally_light_samples,
@@ -186,6 +200,96 @@ static void write_tally(const char *name)
 #endif
 }
 
+/// Sequences ///
+
+#if SEQUENCES
+static struct brume_state *state_memory(void)
+{
+    return (struct brume_state *)(void *)s_state;
+}
+
+/* The passes of the frame in s_frame; the instructions of each go to count. */
+static int draw_frame(uint64_t count[4])
+{
+    struct brume_state *state = state_memory();
+    const struct brume_frame *f = &s_frame;
+    int err[4];
+    uint64_t start = target_instructions();
+    err[0] = brume_begin_state(state, f);
+    count[0] = target_instructions() - start;
+    start = target_instructions();
+    err[1] = brume_trace_rect(f, state, 0, 0, f->lattice[0], f->lattice[1]);
+    count[1] = target_instructions() - start;
+    start = target_instructions();
+    err[2] = brume_resolve_rect(f, state, 0, 0, f->grid[0], f->grid[1]);
+    count[2] = target_instructions() - start;
+    start = target_instructions();
+    err[3] = brume_show_rect(f, state, 0, 0, f->width, f->height, BRUME_RGB888,
+                             s_pixels, f->width * 3u, s_work, sizeof s_work);
+    count[3] = target_instructions() - start;
+    for (int i = 0; i < 4; i++)
+        if (err[i] != BRUME_OK)
+            return err[i];
+    return BRUME_OK;
+}
+
+static int draw_sequence(const struct test_scene *t, uint64_t count[4],
+                         uint64_t *begin)
+{
+    int error = brume_state_init(state_memory(), sizeof s_state);
+    for (unsigned i = 0; i < test_scene_frames(t) && !error; i++) {
+        test_scene_frame(&s_scene, t, &s_volume, i);
+        uint64_t start = target_instructions();
+        error = brume_begin_frame(&s_frame, &s_volume, &s_scene);
+        *begin = target_instructions() - start;
+        if (!error)
+            error = draw_frame(count);
+    }
+    return error;
+}
+
+/* Does it fit the memory here? */
+static bool fits(const struct test_scene *t)
+{
+    test_scene_frame(&s_scene, t, &s_volume, 0);
+    return brume_state_bytes(&s_scene) <= sizeof s_state &&
+           (size_t)t->width * t->height * 3 <= sizeof s_pixels;
+}
+
+static int run_sequence(const struct test_scene *t,
+                        const struct target_asset *asset)
+{
+    uint64_t count[4] = {0, 0, 0, 0}, begin = 0;
+    int error = open_volume(t->volume, asset);
+    if (!error && !fits(t))
+        return 0;
+    target_stack_paint();
+    if (!error)
+        error = draw_sequence(t, count, &begin);
+    measure_stack();
+    if (error) {
+        write_line("error ", t->name, " ");
+        write_line(brume_error_text(error), "", "\n");
+        return 1;
+    }
+    write_scene(t->name, test_crc32(s_pixels, (size_t)t->width * t->height * 3),
+                count[0] + count[1] + count[2] + count[3], begin);
+    write_line("passes ", t->name, "");
+    for (int i = 0; i < 4; i++)
+        write_number(" ", count[i]);
+    target_write("\n");
+    return 0;
+}
+#else
+static int run_sequence(const struct test_scene *t,
+                        const struct target_asset *asset)
+{
+    (void)t;
+    (void)asset;
+    return 0;
+}
+#endif
+
 static int run_scene(const struct test_scene *t,
                      const struct target_asset *asset)
 {
@@ -232,7 +336,8 @@ int target_main(void)
         const struct test_scene *t = &test_scenes[i];
         const struct target_asset *asset = asset_of(t);
         if (asset != NULL && t->width * t->height <= TARGET_PIXELS_MAX)
-            status |= run_scene(t, asset);
+            status |= t->sequence != NULL ? run_sequence(t, asset)
+                                          : run_scene(t, asset);
     }
     target_write("stack");
     write_number(" ", s_stack_used);

@@ -2,8 +2,9 @@
 /* SPDX-License-Identifier: MIT */
 /* N-rooks sets of 1 .. 16 points, in their order of use: 16 row + column.
  * 256 bytes. */
-#include <stdint.h>
+#include "brume_inner.h"
 
+#if BRUME_WITH_TEMPORAL
 const uint8_t brume_nrooks[16][16] = {
     {0x00},
     {0x00, 0x11},
@@ -26,3 +27,4 @@ const uint8_t brume_nrooks[16][16] = {
     {0x00, 0x85, 0x29, 0xac, 0x6f, 0xe6, 0x42, 0xfb, 0xc3, 0x7a, 0x14, 0x91,
      0x3d, 0xb8, 0x57, 0xde},
 };
+#endif
