@@ -275,24 +275,6 @@ int brume_begin_frame(struct brume_frame *frame,
 
 /// Pixels ///
 
-static bool rect_fits(const uint16_t size[2], unsigned x, unsigned y,
-                      unsigned w, unsigned h)
-{
-    return x <= size[0] && w <= size[0] - x && y <= size[1] && h <= size[1] - y;
-}
-
-/* Is there room for w x h pixels, and is their format compiled in? */
-static int check_pixels(int pixel_format, unsigned w, unsigned h, size_t stride)
-{
-    unsigned bytes = brume_pixel_bytes(pixel_format);
-    if (bytes == 0 || (h > 1 && stride < (size_t)w * bytes))
-        return BRUME_ERR_RECT;
-    return BRUME_WITH_RGB || pixel_format == BRUME_L8 ||
-                   pixel_format == BRUME_L16
-               ? BRUME_OK
-               : BRUME_ERR_FEATURE;
-}
-
 /* Does brume_render_rect alone give the frame? */
 static bool is_plain(const struct brume_frame *f)
 {
@@ -315,12 +297,12 @@ int brume_render_rect(const struct brume_frame *frame, unsigned x, unsigned y,
     unsigned bytes = brume_pixel_bytes(pixel_format);
     if (frame == NULL || dst == NULL)
         return BRUME_ERR_NULL;
-    int err = check_pixels(pixel_format, w, h, stride);
+    int err = brume_pixels_check(pixel_format, w, h, stride);
     if (err)
         return err;
     if (!is_plain(frame))
         return BRUME_ERR_STATE;
-    if (!rect_fits(frame->lattice, x, y, w, h))
+    if (!brume_rect_fits(frame->lattice, x, y, w, h))
         return BRUME_ERR_RECT;
     for (unsigned j = 0; j < h; j++) {
         uint8_t *to = (uint8_t *)dst + j * stride;
@@ -341,7 +323,7 @@ int brume_march_rect(const struct brume_frame *frame, unsigned x, unsigned y,
 {
     if (frame == NULL || out == NULL)
         return BRUME_ERR_NULL;
-    if (!rect_fits(frame->lattice, x, y, w, h) || (h > 1 && stride < w))
+    if (!brume_rect_fits(frame->lattice, x, y, w, h) || (h > 1 && stride < w))
         return BRUME_ERR_RECT;
     for (unsigned j = 0; j < h; j++, out += stride)
         for (unsigned i = 0; i < w; i += BRUME_SPAN)
@@ -357,7 +339,7 @@ int brume_pack_rect(const struct brume_frame *frame,
 {
     if (frame == NULL || in == NULL || dst == NULL)
         return BRUME_ERR_NULL;
-    int err = check_pixels(pixel_format, w, h, stride);
+    int err = brume_pixels_check(pixel_format, w, h, stride);
     if (err == BRUME_OK && h > 1 && in_stride < w)
         err = BRUME_ERR_RECT;
     for (unsigned j = 0; err == BRUME_OK && j < h; j++)
@@ -386,7 +368,7 @@ int brume_store_rect(const struct brume_frame *frame, struct brume_state *state,
     int err = in == NULL ? BRUME_ERR_NULL : check_state(frame, state);
     if (err)
         return err;
-    if (!rect_fits(frame->lattice, x, y, w, h) || (h > 1 && stride < w))
+    if (!brume_rect_fits(frame->lattice, x, y, w, h) || (h > 1 && stride < w))
         return BRUME_ERR_RECT;
     for (unsigned j = 0; j < h; j++)
         brume_store_span(frame, state, x, y + j, w, in + j * stride);
@@ -400,7 +382,7 @@ int brume_trace_rect(const struct brume_frame *frame, struct brume_state *state,
     int err = check_state(frame, state);
     if (err)
         return err;
-    if (!rect_fits(frame->lattice, x, y, w, h))
+    if (!brume_rect_fits(frame->lattice, x, y, w, h))
         return BRUME_ERR_RECT;
     for (unsigned j = 0; j < h; j++)
         for (unsigned i = 0; i < w; i += BRUME_SPAN) {
@@ -418,7 +400,7 @@ int brume_resolve_rect(const struct brume_frame *frame,
     int err = check_state(frame, state);
     if (err)
         return err;
-    if (!rect_fits(frame->grid, x, y, w, h))
+    if (!brume_rect_fits(frame->grid, x, y, w, h))
         return BRUME_ERR_RECT;
 #if BRUME_WITH_TAA
     for (unsigned j = 0; frame->temporal == BRUME_TAA && j < h; j++)

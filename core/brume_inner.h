@@ -7,7 +7,9 @@
  *   brume_nrooks  N-rooks sets       brume_temporal  history
  *   brume_noise   jitter             brume_resolve   reprojection
  *   brume_asset   checking           brume_output    pixels
- *   brume_lattice which rays         brume_filter    space, resolution
+ *   brume_lattice which rays         brume_filter    space (brume_filter.h)
+ *                                    brume_upsample  resolution
+ *                                    brume_show      rows to pixels
  *                                    brume           frames
  */
 #ifndef BRUME_INNER_H
@@ -274,6 +276,16 @@ void brume_resolve_span(const struct brume_frame *frame,
 #endif
 
 /// brume_output.c ///
+
+/* Are the w x h at (x, y) inside of a width and a height? */
+BRUME_INLINE bool brume_rect_fits(const uint16_t size[2], unsigned x,
+                                  unsigned y, unsigned w, unsigned h)
+{
+    return x <= size[0] && w <= size[0] - x && y <= size[1] && h <= size[1] - y;
+}
+
+/* Is there room for w x h pixels, and is their format compiled in? */
+int brume_pixels_check(int pixel_format, unsigned w, unsigned h, size_t stride);
 
 /* Composes n pixels over the background and packs them. */
 void brume_pack_span(const struct brume_frame *frame,

@@ -16,6 +16,17 @@ unsigned brume_pixel_bytes(int pixel_format)
     }
 }
 
+int brume_pixels_check(int pixel_format, unsigned w, unsigned h, size_t stride)
+{
+    unsigned bytes = brume_pixel_bytes(pixel_format);
+    if (bytes == 0 || (h > 1 && stride < (size_t)w * bytes))
+        return BRUME_ERR_RECT;
+    return BRUME_WITH_RGB || pixel_format == BRUME_L8 ||
+                   pixel_format == BRUME_L16
+               ? BRUME_OK
+               : BRUME_ERR_FEATURE;
+}
+
 /* Over the background's channel c: Q0.16, at most 65536. */
 static uint32_t composed(const struct brume_frame *f,
                          const struct brume_radiance *in, int c)

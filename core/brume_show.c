@@ -30,16 +30,6 @@ struct show {
     uint32_t oldest;              /* of the rows in the ring */
 };
 
-static uint32_t resolution_of(const struct brume_frame *f)
-{
-#if BRUME_WITH_RESOLUTION
-    return f->resolution;
-#else
-    (void)f;
-    return 0;
-#endif
-}
-
 static uint32_t radius_of(const struct brume_frame *f)
 {
 #if BRUME_WITH_SPATIAL
@@ -225,7 +215,7 @@ static void show_upsampled(struct show *s, uint32_t x, uint32_t y, uint32_t w,
 static void set_frame(struct show *s, const struct brume_frame *frame)
 {
     s->frame = frame;
-    s->resolution = resolution_of(frame);
+    s->resolution = brume_resolution_of(frame);
     s->radius = radius_of(frame);
 }
 
@@ -305,19 +295,6 @@ static bool is_usable(const struct brume_frame *f, const struct brume_state *s)
 #endif
 }
 
-static int check_pixels(const struct brume_frame *f, unsigned x, unsigned y,
-                        unsigned w, unsigned h, int pixel_format, size_t stride)
-{
-    unsigned bytes = brume_pixel_bytes(pixel_format);
-    if (bytes == 0 || x > f->width || w > f->width - x || y > f->height ||
-        h > f->height - y || (h > 1 && stride < (size_t)w * bytes))
-        return BRUME_ERR_RECT;
-    if (!BRUME_WITH_RGB && pixel_format != BRUME_L8 &&
-        pixel_format != BRUME_L16)
-        return BRUME_ERR_FEATURE;
-    return BRUME_OK;
-}
-
 int brume_show_rect(const struct brume_frame *frame,
                     const struct brume_state *state, unsigned x, unsigned y,
                     unsigned w, unsigned h, int pixel_format, void *dst,
@@ -326,9 +303,12 @@ int brume_show_rect(const struct brume_frame *frame,
     struct show s;
     if (frame == NULL || dst == NULL || work == NULL)
         return BRUME_ERR_NULL;
-    int err = check_pixels(frame, x, y, w, h, pixel_format, stride);
+    const uint16_t image[2] = {frame->width, frame->height};
+    int err = brume_pixels_check(pixel_format, w, h, stride);
     if (err)
         return err;
+    if (!brume_rect_fits(image, x, y, w, h))
+        return BRUME_ERR_RECT;
     if (!is_usable(frame, state) || ((uintptr_t)work & 3u) != 0 ||
         work_size < brume_work_bytes(frame, w))
         return BRUME_ERR_STATE;
