@@ -19,14 +19,17 @@
 /* A number in 0 .. 65535 for rounding what ray (x, y) keeps in this frame, so
  * that on average nothing is lost and nothing sticks: an additive recurrence
  * (R2 in space, the square root of 2 in time), whose means over neighbours
- * and frames converge faster than those of random numbers. No noise of the
- * march uses the same steps. */
+ * and frames converge faster than those of random numbers. It has a direction
+ * in time, which an average with feedback notices (0.08/255 in 8 bits): so
+ * every other ray has the mirrored one. No noise of the march uses the same
+ * steps. */
 BRUME_INLINE uint32_t dither(uint32_t x, uint32_t y, uint32_t frame,
                              uint32_t quantity)
 {
-    return (x * 3242174889u + y * 2447445414u + frame * 1779033704u +
-            quantity * 2654435769u) >>
-           16;
+    uint32_t r = (x * 3242174889u + y * 2447445414u + frame * 1779033704u +
+                  quantity * 2654435769u) >>
+                 16;
+    return (x ^ y) & 1u ? 65535u - r : r;
 }
 
 /* h + alpha (s - h), rounded by r. h, s and r in 0 .. 65535; alpha Q0.16. */
