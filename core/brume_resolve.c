@@ -332,6 +332,20 @@ static uint32_t history_of(const struct brume_frame *f,
     return 0x10000u;
 }
 
+/* The weight of a ray that has its turn. The first one since the cut takes the
+ * place of its cell's; later, while things move, it weighs what the frames
+ * since the last one would have weighed. */
+static uint32_t weight_of_turn(const struct brume_frame *f,
+                               const struct brume_state *s, uint32_t alpha)
+{
+    uint32_t turns = brume_period_log2(f->update), keep = 0x10000u - alpha;
+    if (s->frames >> turns == 0)
+        return 0x10000u;
+    for (; turns > 0 && !s->still; turns--)
+        keep = keep * keep >> 16; /* keep < 2^16 */
+    return 0x10000u - keep;
+}
+
 void brume_resolve_span(const struct brume_frame *frame,
                         struct brume_state *state, uint32_t x, uint32_t y,
                         uint32_t n)
@@ -347,6 +361,8 @@ void brume_resolve_span(const struct brume_frame *frame,
             alpha = history_of(f, state, i, y, &in, &h);
         if (alpha < 0x10000u && brume_age_of(f, i, y) > 0)
             in = h;
+        else if (alpha < 0x10000u)
+            alpha = weight_of_turn(f, state, alpha);
         if (!state->still)
             h.depth = in.depth = (uint16_t)depth;
         brume_history_put(f, state, state->now, i, y, &h, &in, alpha);
