@@ -35,11 +35,14 @@ CORE_OBJ = $(patsubst core/%.c,$(BUILD)/core/%.o,$(wildcard core/*.c))
 TABLE_OBJ = $(patsubst %.c,$(BUILD)/%.o,$(wildcard tables/noise_*.c))
 NOISE_OBJ = $(patsubst %.c,$(BUILD)/%.o,\
 	$(filter-out %_main.c,$(wildcard tables/noise/*.c)))
-HOST_OBJ = $(patsubst platform/%.c,$(BUILD)/%.o,$(HOST_SRC))
+HOST_OBJ = $(patsubst platform/%.c,$(BUILD)/%.o,$(HOST_SRC)) \
+	$(WIDE:%=$(BUILD)/host/wide_march_%.o)
 CONVERT_OBJ = $(patsubst convert/%.cpp,$(BUILD)/convert/%.o,\
 	$(filter-out %_main.cpp,$(wildcard convert/*.cpp)))
 REFERENCE_OBJ = $(patsubst tests/%.cpp,$(BUILD)/tests/%.o,\
 	$(filter-out %_main.cpp,$(wildcard tests/reference/*.cpp)))
+STABILITY_OBJ = $(patsubst tests/%.c,$(BUILD)/tests/%.o,\
+	$(wildcard tests/stability/*.c))
 TEST_LIB_OBJ = $(patsubst tests/%.c,$(BUILD)/tests/%.o,\
 	$(wildcard tests/support/*.c)) $(filter-out %/main.o,$(HOST_OBJ))
 TESTS = $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c)) \
@@ -49,10 +52,11 @@ PROGRAMS = $(BUILD)/brume $(BUILD)/brume-bake $(BUILD)/brume-cloud \
 TARGET_PROGRAMS = $(PROGRAMS) $(BUILD)/tests/hash_scenes
 TEST_PROGRAMS = $(TESTS) $(BUILD)/brume-reference $(BUILD)/brume-spec-dump \
 	$(BUILD)/tests/hash_scenes $(BUILD)/tests/section_dump \
-	$(BUILD)/tests/make_vdbs $(BUILD)/tests/noise_march
+	$(BUILD)/tests/make_vdbs $(BUILD)/tests/noise_march \
+	$(BUILD)/brume-stability
 
-.PHONY: all demo test golden bench targets targets-update targets-deps \
-	deps test-deps install clean help
+.PHONY: all demo test golden targets targets-update targets-deps deps \
+	test-deps install clean help
 .DELETE_ON_ERROR:
 
 ifeq ($(CONF),host)
@@ -77,9 +81,6 @@ targets: targets-deps ## one image on every target: build, run, compare, table
 targets-update: $(TARGET_PROGRAMS) ## renew counts.txt and docs/TARGETS.md
 	@BUILD=$(BUILD) DATA=$(DATA) JOBS=$(JOBS) sh tests/targets/run.sh update
 
-bench: $(PROGRAMS) ## what the choices of format and order cost and gain
-	@BUILD=$(BUILD) DATA=$(DATA) sh tests/bench.sh
-
 deps: ## install the packages that the programs need, if any is missing
 	@sh platform/host/deps.sh $(PACKAGES)
 
@@ -101,8 +102,13 @@ clean: ## remove what was built
 	rm -rf $(BUILD)
 
 help: ## this list
-	@sed -n 's/^\([a-z-]*\):.*## /  make \1|/p' Makefile platform/targets.mk | \
+	@sed -n 's/^\([a-z-]*\):.*## /  make \1|/p' Makefile platform/targets.mk \
+		bench/bench.mk | \
 		awk -F'|' '{ printf "%-21s %s\n", $$1, $$2 }'
+
+ifeq ($(CONF),host)
+include bench/bench.mk
+endif
 
 # Programs
 $(BUILD)/brume: $(HOST_OBJ) $(BUILD)/libbrume.a
@@ -130,6 +136,10 @@ $(BUILD)/brume-reference: $(BUILD)/tests/reference/reference_main.o \
 $(BUILD)/brume-spec-dump: $(BUILD)/tests/reference/spec_dump_main.o \
 		$(REFERENCE_OBJ)
 	$(CXX) $(LDFLAGS) -o $@ $^
+
+$(BUILD)/brume-stability: $(STABILITY_OBJ) $(TEST_LIB_OBJ) \
+		$(BUILD)/libbrume.a
+	$(CC) $(LDFLAGS) -o $@ $^ -lm -lpthread
 
 # Tests
 $(BUILD)/tests/hash_scenes: $(BUILD)/tests/hash_scenes.o $(TEST_LIB_OBJ) \
@@ -164,6 +174,11 @@ $(BUILD)/tables/noise/%.o: tables/noise/%.c
 $(BUILD)/tables/%.o: tables/%.c
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(CORE_FLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
+
+$(BUILD)/host/wide_march_%.o: platform/host/wide_march.c
+	@mkdir -p $(@D)
+	$(CC) $(CPPFLAGS) $(HOST_FLAGS) $(CFLAGS) $(WIDE_FLAGS_$*) \
+		-DWIDE_NAME=wide_march_$* -MMD -MP -c -o $@ $<
 
 $(BUILD)/host/%.o: platform/host/%.c
 	@mkdir -p $(@D)

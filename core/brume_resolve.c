@@ -311,25 +311,28 @@ static bool find(const struct brume_frame *f, const struct brume_state *s,
            magnitude((int32_t)depth - h->depth) <= DISOCCLUDED;
 }
 
-/* The ray's history into *h, and returns the weight of this frame's. Where
- * there is none, *in is drawn towards its neighbours. */
-static uint32_t history_of(const struct brume_frame *f,
-                           const struct brume_state *s, uint32_t x, uint32_t y,
-                           struct brume_sample *in, struct brume_sample *h)
+/* The ray's history into *h, and the weight of this frame's ray beside it.
+ * False when it has none; then *in is drawn towards its neighbours. */
+static bool history_of(const struct brume_frame *f, const struct brume_state *s,
+                       uint32_t x, uint32_t y, struct brume_sample *in,
+                       struct brume_sample *h, uint32_t *alpha)
 {
     struct vicinity v;
+    *alpha = f->alpha;
     if (s->at_rest)
         brume_history_get(f, s, s->now ^ 1u, y * f->grid[0] + x, h);
     if (s->still)
-        return f->alpha;
+        return true;
     look_around(f, s, x, y, in, &v);
     if (v.depth == BRUME_NO_DEPTH) /* clear: there is nothing to average */
-        return 0x10000u;
-    if (s->at_rest || find(f, s, x, y, v.depth, h))
-        return hold(f, &v, h);
+        return false;
+    if (s->at_rest || find(f, s, x, y, v.depth, h)) {
+        *alpha = hold(f, &v, h);
+        return true;
+    }
     in->light = (uint16_t)((in->light + v.mean[0] + 1u) >> 1);
     in->transmittance = (uint16_t)((in->transmittance + v.mean[1] + 1u) >> 1);
-    return 0x10000u;
+    return false;
 }
 
 /* The weight of a ray that has its turn. The first one since the cut takes the
@@ -356,12 +359,14 @@ void brume_resolve_span(const struct brume_frame *frame,
         struct brume_sample in =
             *brume_sample_at(state, brume_lattice_index(f, i, y));
         struct brume_sample h = in;
-        uint32_t depth = in.depth, alpha = 0x10000u;
-        if (state->frames > 0)
-            alpha = history_of(f, state, i, y, &in, &h);
-        if (alpha < 0x10000u && brume_age_of(f, i, y) > 0)
+        uint32_t depth = in.depth, alpha, age = brume_age_of(f, i, y);
+        /* One that weighs all has no use for history. */
+        if (state->frames == 0 || (age == 0 && f->alpha == 0x10000u) ||
+            !history_of(f, state, i, y, &in, &h, &alpha))
+            alpha = 0x10000u;
+        else if (age > 0)
             in = h;
-        else if (alpha < 0x10000u)
+        else
             alpha = weight_of_turn(f, state, alpha);
         if (!state->still)
             h.depth = in.depth = (uint16_t)depth;
