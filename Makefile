@@ -175,7 +175,8 @@ $(BUILD)/tables/%.o: tables/%.c
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(CORE_FLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
 
-$(BUILD)/host/wide_march_%.o: platform/host/wide_march.c
+$(WIDE:%=$(BUILD)/host/wide_march_%.o): $(BUILD)/host/wide_march_%.o: \
+		platform/host/wide_march.c
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(HOST_FLAGS) $(CFLAGS) $(WIDE_FLAGS_$*) \
 		-DWIDE_NAME=wide_march_$* -MMD -MP -c -o $@ $<

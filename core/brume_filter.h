@@ -36,7 +36,7 @@ BRUME_INLINE uint16_t brume_round_q16(uint32_t a)
 BRUME_INLINE uint16_t brume_mean_of(uint32_t a, uint32_t b)
 {
     BRUME_CHECK(b > 0 && b <= 0x10000u && a <= 0xffffu * b);
-    return b == 0x10000u ? brume_round_q16(a) : (uint16_t)((a + (b >> 1)) / b);
+    return (uint16_t)(b == 0x10000u ? brume_round_q16(a) : (a + (b >> 1)) / b);
 }
 
 BRUME_INLINE uint32_t brume_distance(uint32_t a, uint32_t b)

@@ -51,10 +51,12 @@ mkdir -p "$BUILD/tests"
 ! wanted golden "$@" || run golden sh tests/golden.sh check
 # shellcheck disable=SC2086
 ! wanted render "$@" || run render "$BUILD/tests/test_render" $volumes
+# shellcheck disable=SC2086
+! wanted wide "$@" || run wide "$BUILD/tests/test_wide" $volumes
 for test in "$BUILD"/tests/test_*; do
     name=$(basename "$test")
     [ -x "$test" ] || continue
-    case $name in *.* | test_golden | test_render) continue ;; esac
+    case $name in *.* | test_golden | test_render | test_wide) continue ;; esac
     ! wanted "$name" "$@" || run "$name" "$test"
 done
 for test in tests/test_*.sh; do

@@ -40,7 +40,9 @@ compiled()
     shift
     "$@" -std=c11 -D_POSIX_C_SOURCE=200809L -Icore -Iplatform/host \
         -Itables/noise tables/noise/*.c platform/host/image*.c \
+        platform/host/png_pack.c platform/host/crc32.c \
         platform/host/deflate*.c platform/host/inflate.c \
+        platform/host/out_file.c platform/host/pool.c \
         -o "$work/$name" -lm -lpthread 2>"$err" && return
     head -n 5 "$err"
     return 1

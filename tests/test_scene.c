@@ -107,6 +107,12 @@ static const struct range k_ranges[] = {
      0.0625, 256},
     {"frame", SCENE_FRAME, "0", "4294967295", "-1", "4294967296", 0,
      4294967295.0},
+    {"window", SCENE_WINDOW, "1", "16", "0", "17", 1, 16},
+    {"alpha", SCENE_ALPHA, "0.015625", "1", "0.0156249", "1.0000001", 0.015625,
+     1},
+    {"gamma", SCENE_GAMMA, "0", "16", "-1e-9", "16.00001", 0, 16},
+    {"edge_falloff", SCENE_EDGE_FALLOFF, "0", "1024", "-1e-9", "1024.0001", 0,
+     1024},
 };
 
 static void test_ranges(void)
@@ -248,6 +254,19 @@ static const struct {
       "nrooks"}},
     {"output", SCENE_OUTPUT, {"linear", "srgb"}},
     {"skip", SCENE_SKIP, {"off", "on"}},
+    {"temporal", SCENE_TEMPORAL, {"none", "ema", "window", "taa"}},
+    {"history_bits", SCENE_HISTORY_BITS, {"8", "16"}},
+    {"fetch", SCENE_FETCH, {"bilinear", "catmull-rom"}},
+    {"clamp", SCENE_CLAMP, {"none", "minmax", "variance"}},
+    {"spatial",
+     SCENE_SPATIAL,
+     {"none", "box3", "box5", "gauss1", "binomial3", "binomial5",
+      "bilateral15"}},
+    {"resolution", SCENE_RESOLUTION, {"full", "half", "quarter"}},
+    {"update", SCENE_UPDATE, {"all", "checker", "bayer4"}},
+    {"upsample", SCENE_UPSAMPLE, {"bilinear", "aware"}},
+    {"subpixel", SCENE_SUBPIXEL, {"off", "on"}},
+    {"cut", SCENE_CUT, {"off", "on"}},
 };
 
 static void test_words(void)
@@ -707,6 +726,60 @@ static void test_numbers(void)
     free(file.data);
 }
 
+/// Over time and over the image ///
+
+static void test_passes(void)
+{
+    struct volume_file file = make_block(&k_plain);
+    struct brume_scene s;
+    bool good = apply_text("temporal = taa\nhistory_bits = 8\nwindow = 16\n"
+                           "alpha = 0.25\nfetch = catmull-rom\nclamp = minmax\n"
+                           "gamma = 2.5\nspatial = box5\nedge_falloff = 3\n"
+                           "resolution = quarter\nupdate = bayer4\n"
+                           "upsample = aware\nsubpixel = off\ncut = on\n",
+                           &file, &s) == 0;
+    tap_check(good && s.temporal == BRUME_TAA && s.history_bits == 8 &&
+                  s.window == 16 && s.alpha == 0x4000 &&
+                  s.fetch == BRUME_FETCH_CATMULL_ROM &&
+                  s.clamp == BRUME_CLAMP_MINMAX && s.gamma == 0x28000 &&
+                  s.spatial == BRUME_BOX5 && s.edge_falloff == 0x30000 &&
+                  s.resolution == BRUME_QUARTER && s.update == BRUME_BAYER4 &&
+                  s.upsample == BRUME_UPSAMPLE_AWARE && !s.subpixel && s.cut,
+              "the keys of time and image reach the core");
+    struct brume_frame frame;
+    tap_check(brume_begin_frame(&frame, &file.volume, &s) == BRUME_OK,
+              "and it takes them");
+    free(file.data);
+}
+
+static void test_pass_defaults(void)
+{
+    struct volume_file file = make_block(&k_plain);
+    struct brume_scene s;
+    bool good = apply_text("", &file, &s) == 0;
+    tap_check(good && s.temporal == BRUME_TEMPORAL_NONE &&
+                  s.spatial == BRUME_SPATIAL_NONE &&
+                  s.resolution == BRUME_FULL && s.update == BRUME_UPDATE_ALL &&
+                  !s.subpixel && !s.cut && s.edge_falloff == 0,
+              "nothing over time or image by default");
+    tap_check(s.history_bits == 16 && s.window == 8 && s.alpha == 6554 &&
+                  s.gamma == 0x8000 && s.clamp == BRUME_CLAMP_VARIANCE &&
+                  s.fetch == BRUME_FETCH_CATMULL_ROM,
+              "16 bits, 8 frames, alpha 0.1, half a deviation, Catmull-Rom");
+    good = apply_text("temporal = window", &file, &s) == 0 && s.subpixel;
+    good = good && apply_text("temporal = taa", &file, &s) == 0 && s.subpixel;
+    good = good && apply_text("temporal = ema", &file, &s) == 0 && !s.subpixel;
+    tap_check(good, "window and taa move rays within pixels, ema does not");
+    good =
+        apply_text("spatial = bilateral15", &file, &s) == 0 &&
+        s.edge_falloff == 16 << 16 &&
+        apply_text("spatial = bilateral15\nedge_falloff = 0", &file, &s) == 0 &&
+        s.edge_falloff == 0 && apply_text("spatial = box3", &file, &s) == 0;
+    tap_check(good && s.edge_falloff == 0,
+              "bilateral15 minds edges unless told not to, box3 does not");
+    free(file.data);
+}
+
 /// Framing ///
 
 static void cross(const double a[3], const double b[3], double out[3])
@@ -843,6 +916,20 @@ static const char *difference(const struct brume_scene *a,
     SAME(noise);
     SAME(output);
     SAME(skip);
+    SAME(temporal);
+    SAME(history_bits);
+    SAME(window);
+    SAME(fetch);
+    SAME(clamp);
+    SAME(spatial);
+    SAME(resolution);
+    SAME(update);
+    SAME(upsample);
+    SAME(subpixel);
+    SAME(cut);
+    SAME(alpha);
+    SAME(gamma);
+    SAME(edge_falloff);
 #undef SAME
     return NULL;
 }
@@ -879,7 +966,11 @@ static void test_printing(const struct world *w, const char *name)
         "min_transmittance = 0.0123456\nfilter = nearest\nlight = log\n"
         "light_samples = 11\nlight_step = 0.3333333\njitter = light\n"
         "noise = white\nframe = 4000000001\nbackground = 0.1 0.2 0.3\n"
-        "output = linear\nskip = off\n";
+        "output = linear\nskip = off\ntemporal = taa\nhistory_bits = 8\n"
+        "window = 3\nalpha = 0.123456789\nfetch = catmull-rom\n"
+        "clamp = minmax\ngamma = 1.23456789\nspatial = bilateral15\n"
+        "edge_falloff = 3.3333333\nresolution = half\nupdate = checker\n"
+        "upsample = aware\nsubpixel = off\ncut = on\n";
     char text[100];
     struct volume_file file = make_block(w);
     snprintf(text, sizeof text, "%s, defaults", name);
@@ -959,6 +1050,8 @@ int main(void)
     test_where_is_kept();
     test_light();
     test_numbers();
+    test_passes();
+    test_pass_defaults();
     test_framing(&k_plain, "plain");
     test_framing(&k_turned, "turned");
     test_longest();

@@ -1,34 +1,55 @@
 /* SPDX-License-Identifier: MIT */
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "commands.h"
-#include "deflate.h"
-#include "image.h"
-#include "render.h"
-#include "scene_file.h"
+#include "sequence.h"
 
 static const char k_help[] =
     "usage: brume render VOLUME.brume [--scene FILE] [--set KEY=VALUE]...\n"
-    "                    -o OUT.png|.ppm|.pgm|.pfm [--threads N] [--hash]\n"
+    "                    -o OUT.png|.ppm|.pgm|.pfm [OPTIONS]\n"
+    "       brume render VOLUME.brume --frames A:B [--path FILE] ...\n"
+    "                    -o OUT_%04d.png|OUT.apng|OUT.y4m|- [OPTIONS]\n"
     "\n"
     "Draws a baked volume. Without a scene the whole volume is shown.\n"
     "\n"
     "  --scene FILE      lines `key = value`, # starts a comment\n"
     "  --set KEY=VALUE   the same, said here; later ones win\n"
     "  --threads N       1 to 256 (all processors); same picture for any N\n"
+    "  --kernel NAME     auto scalar avx2 avx512 generic: what marches "
+    "(auto);\n"
+    "                    same picture for any\n"
     "  --hash            print the CRC-32 of the pixels, rows from the top\n"
+    "  --profile         print milliseconds by pass to stderr: processor time\n"
+    "                    of all threads, the clock, the march's share\n"
     "  -o OUT            .pfm holds linear radiance, whatever `output` says\n"
+    "\n"
+    "Sequences:\n"
+    "  --frames A:B      frames A to B, each after those before it; `frame` "
+    "is\n"
+    "                    set to their numbers. VOLUME may have a %d or %04d\n"
+    "                    in its name: a volume for each frame\n"
+    "  --path FILE       values of keys at keyframes: a line `[FRAME]`, then\n"
+    "                    `key = value` for any key but size and frame. "
+    "Numbers\n"
+    "                    move from one keyframe that sets them to the next,\n"
+    "                    words hold. `ease = linear|smooth|spline`, from here\n"
+    "                    on. `cut = on`: what is set here jumps to its value,\n"
+    "                    and earlier frames are forgotten\n"
+    "  --fps N[/M]       of films (25)\n"
+    "  -o OUT            a name with one %d or %04d: a picture each; .apng: "
+    "an\n"
+    "                    animated PNG; .y4m, or - for stdout: YUV4MPEG2, "
+    "4:4:4\n"
     "\n"
     "Keys, with ranges and (defaults):\n";
 
 struct options {
-    const char *volume, *out;
+    struct sequence sequence;
     struct scene_settings settings;
-    int threads;
-    bool hash;
+    const char *path;
 };
 
 /* 0 to go on, else the exit status plus 1. */
@@ -38,10 +59,88 @@ static int usage(const char *what, const char *arg)
     return 3;
 }
 
+/// Values ///
+
+/* A whole number from min to max, and nothing behind it. */
+static bool read_whole(const char *text, uint64_t min, uint64_t max,
+                       uint64_t *out)
+{
+    char *end;
+    errno = 0;
+    unsigned long long n = strtoull(text, &end, 10);
+    *out = n;
+    return *text >= '0' && *text <= '9' && *end == '\0' && errno == 0 &&
+           n >= min && n <= max;
+}
+
+/* Two of them, `by` between; the second may be missing when it has a
+ * default. */
+static bool read_pair(const char *text, char by, uint64_t min, uint64_t max,
+                      uint64_t pair[2], bool both)
+{
+    char first[24];
+    const char *second = strchr(text, by);
+    size_t n = second ? (size_t)(second - text) : strlen(text);
+    if (n >= sizeof first || (both && second == NULL))
+        return false;
+    memcpy(first, text, n);
+    first[n] = '\0';
+    return read_whole(first, min, max, &pair[0]) &&
+           (second == NULL || read_whole(second + 1, min, max, &pair[1]));
+}
+
+static int read_threads(struct sequence *s, const char *value)
+{
+    uint64_t n;
+    if (!read_whole(value, 1, POOL_MAX, &n))
+        return usage("--threads is 1 to 256, not ", value);
+    s->threads = (int)n;
+    return 0;
+}
+
+static int read_frames(struct sequence *s, const char *value)
+{
+    uint64_t pair[2];
+    if (!read_pair(value, ':', 0, UINT32_MAX, pair, true))
+        return usage("--frames is A:B, two frame numbers, not ", value);
+    if (pair[0] > pair[1] || pair[1] - pair[0] >= INT32_MAX)
+        return usage("--frames A:B goes from the first to the last, not ",
+                     value);
+    s->many = true;
+    s->first = (uint32_t)pair[0];
+    s->last = (uint32_t)pair[1];
+    return 0;
+}
+
+static int read_rate(struct sequence *s, const char *value)
+{
+    uint64_t pair[2] = {0, 1};
+    if (!read_pair(value, '/', 1, 65535, pair, false))
+        return usage("--fps is N or N/M, each 1 to 65535, not ", value);
+    s->rate[0] = (unsigned)pair[0];
+    s->rate[1] = (unsigned)pair[1];
+    return 0;
+}
+
+static int read_kernel(struct sequence *s, const char *value)
+{
+    if (strcmp(value, "auto") == 0)
+        s->kernel = wide_best();
+    else if (!wide_by_name(value, &s->kernel))
+        return usage("--kernel is one of auto scalar avx2 avx512 generic, not ",
+                     value);
+    else if (!wide_has(s->kernel))
+        return usage("this machine or build has no --kernel ", value);
+    return 0;
+}
+
+/// Options ///
+
 static bool takes_value(const char *name)
 {
-    static const char *const k_names[] = {"-o", "--scene", "--set",
-                                          "--threads"};
+    static const char *const k_names[] = {"-o",        "--scene", "--set",
+                                          "--threads", "--path",  "--frames",
+                                          "--fps",     "--kernel"};
     for (size_t i = 0; i < sizeof k_names / sizeof *k_names; i++)
         if (strcmp(name, k_names[i]) == 0)
             return true;
@@ -50,141 +149,90 @@ static bool takes_value(const char *name)
 
 static int read_option(struct options *o, const char *name, const char *value)
 {
-    char err[512], *end;
+    char err[512];
     int bad = 0;
     if (!takes_value(name))
         return usage("unknown option ", name);
     if (value == NULL)
         return usage("no value after ", name);
-    if (strcmp(name, "-o") == 0) {
-        o->out = value;
-    } else if (strcmp(name, "--scene") == 0) {
+    if (strcmp(name, "--threads") == 0)
+        return read_threads(&o->sequence, value);
+    if (strcmp(name, "--frames") == 0)
+        return read_frames(&o->sequence, value);
+    if (strcmp(name, "--fps") == 0)
+        return read_rate(&o->sequence, value);
+    if (strcmp(name, "--kernel") == 0)
+        return read_kernel(&o->sequence, value);
+    if (strcmp(name, "-o") == 0)
+        o->sequence.out = value;
+    else if (strcmp(name, "--path") == 0)
+        o->path = value;
+    else if (strcmp(name, "--scene") == 0)
         bad = scene_read(&o->settings, value, err, sizeof err);
-    } else if (strcmp(name, "--set") == 0) {
+    else
         bad = scene_set(&o->settings, value, "--set", err, sizeof err);
-    } else {
-        long n = strtol(value, &end, 10);
-        if (*value == '\0' || *end != '\0' || n < 1 || n > 256)
-            return usage("--threads is 1 to 256, not ", value);
-        o->threads = (int)n;
-    }
     if (bad)
         fprintf(stderr, "brume render: %s\n", err);
     return bad ? 3 : 0;
 }
 
+/* One argument, or an option and its value: how many there were is added to
+ * *i. */
+static int read_argument(struct options *o, char **argv, int *i)
+{
+    struct sequence *s = &o->sequence;
+    const char *arg = argv[*i];
+    if (strcmp(arg, "--help") == 0) {
+        fputs(k_help, stdout);
+        scene_print_keys(stdout);
+        return 1;
+    }
+    if (strcmp(arg, "--hash") == 0) {
+        s->hash = true;
+    } else if (strcmp(arg, "--profile") == 0) {
+        s->profile = true;
+    } else if (arg[0] == '-' && arg[1] != '\0') {
+        (*i)++;
+        return read_option(o, arg, argv[*i]);
+    } else if (s->volume == NULL) {
+        s->volume = arg;
+    } else {
+        return usage("unexpected argument ", arg);
+    }
+    return 0;
+}
+
 static int read_options(struct options *o, int argc, char **argv)
 {
     memset(o, 0, sizeof *o);
-    o->threads = render_processors();
+    o->sequence.settings = &o->settings;
+    o->sequence.threads = pool_processors();
+    o->sequence.kernel = wide_best();
+    o->sequence.rate[0] = 25;
+    o->sequence.rate[1] = 1;
     for (int i = 1; i < argc; i++) {
-        int result = 0;
-        if (strcmp(argv[i], "--help") == 0) {
-            fputs(k_help, stdout);
-            scene_print_keys(stdout);
-            return 1;
-        }
-        if (strcmp(argv[i], "--hash") == 0) {
-            o->hash = true;
-        } else if (argv[i][0] == '-' && argv[i][1] != '\0') {
-            result = read_option(o, argv[i], argv[i + 1]);
-            i++;
-        } else if (o->volume == NULL) {
-            o->volume = argv[i];
-        } else {
-            result = usage("unexpected argument ", argv[i]);
-        }
+        int result = read_argument(o, argv, &i);
         if (result)
             return result;
     }
-    if (o->volume == NULL)
+    if (o->sequence.volume == NULL)
         return usage("no volume given", "");
-    if (o->out == NULL && !o->hash)
+    if (o->sequence.out == NULL && !o->sequence.hash)
         return usage("no -o OUT given", "");
+    if (o->path != NULL && !o->sequence.many)
+        return usage("--path needs --frames A:B", "");
     return 0;
 }
 
-/* Bytes of a 16-bit picture to floats, in which 65535 is 1. */
-static void widen(const uint16_t *from, float *to, size_t n)
+static int run(struct options *o, char *err, size_t err_size)
 {
-    for (size_t i = 0; i < n; i++)
-        to[i] = (float)(from[i] / 65535.0);
-}
-
-/* Renders into an 8-bit picture, or through 16 bits into a float one. */
-static int draw(const struct brume_frame *frame, bool is_float, bool grey,
-                int threads, struct image *image, char *err, size_t err_size)
-{
-    bool progress = isatty(STDERR_FILENO) != 0;
-    int w = frame->width, h = frame->height, channels = grey ? 1 : 3;
-    if (!is_float) {
-        if (image_new_u8(image, w, h, channels, err, err_size) != 0)
-            return -1;
-        render_frame(frame, grey ? BRUME_L8 : BRUME_RGB888, image->u8,
-                     (size_t)w * (size_t)channels, threads, progress);
-        return 0;
-    }
-    if (image_new_f32(image, w, h, channels, err, err_size) != 0)
-        return -1;
-    uint16_t *wide = malloc(image_samples(image) * sizeof *wide);
-    if (wide == NULL) {
-        snprintf(err, err_size, "not enough memory for %dx%d", w, h);
-        image_free(image);
-        return -1;
-    }
-    render_frame(frame, grey ? BRUME_L16 : BRUME_RGB161616, wide,
-                 (size_t)w * (size_t)channels * sizeof *wide, threads,
-                 progress);
-    widen(wide, image->f32, image_samples(image));
-    free(wide);
-    return 0;
-}
-
-static int print_hash(const struct image *image, char *err, size_t err_size)
-{
-    uint32_t crc = deflate_crc32(0, image->u8, image_samples(image));
-    printf("crc32=%08lx\n", (unsigned long)crc);
-    if (fflush(stdout) == 0 && !ferror(stdout))
-        return 0;
-    snprintf(err, err_size, "cannot write the hash");
-    return -1;
-}
-
-static int run(const struct options *o, char *err, size_t err_size)
-{
-    struct volume_file file;
-    struct brume_scene scene;
-    struct brume_frame frame;
-    struct image image = {0};
-    enum image_format format = IMAGE_PNG;
-    if (o->out && image_format_of(o->out, &format, err, err_size) != 0)
+    struct path *path = NULL;
+    if (o->path != NULL && (path = path_read(o->path, err, err_size)) == NULL)
         return 2;
-    if (o->hash && format == IMAGE_PFM) {
-        snprintf(err, err_size, "--hash is of 8-bit pictures, not of a .pfm");
-        return 2;
-    }
-    if (volume_file_open(&file, o->volume, err, err_size) != 0)
-        return 2;
-    int result = scene_apply(&o->settings, &file, &scene, err, err_size);
-    bool is_float = format == IMAGE_PFM;
-    if (is_float)
-        scene.output = BRUME_LINEAR;
-    int error = result ? 0 : brume_begin_frame(&frame, &file.volume, &scene);
-    if (error)
-        snprintf(err, err_size, "%s", brume_error_text(error));
-    bool grey = scene.background[0] == scene.background[1] &&
-                scene.background[1] == scene.background[2];
-    if (result || error ||
-        draw(&frame, is_float, grey, o->threads, &image, err, err_size) != 0) {
-        volume_file_close(&file);
-        return 2;
-    }
-    volume_file_close(&file);
-    result = o->hash ? print_hash(&image, err, err_size) : 0;
-    if (result == 0 && o->out)
-        result = image_write(o->out, &image, err, err_size);
-    image_free(&image);
-    return result ? 1 : 0;
+    o->sequence.path = path;
+    int status = sequence_run(&o->sequence, err, err_size);
+    path_free(path);
+    return status;
 }
 
 int render_main(int argc, char **argv)

@@ -8,6 +8,8 @@
 #ifndef BRUME_HOST_DEFLATE_H
 #define BRUME_HOST_DEFLATE_H
 
+#include "pool.h"
+
 #include <stddef.h>
 #include <stdint.h>
 
@@ -44,6 +46,10 @@ uint32_t deflate_adler32(uint32_t adler, const void *data, size_t size);
  * in *out_size; NULL when memory is short or the input too long. */
 uint8_t *deflate_zlib(const uint8_t *src, size_t size, unsigned min_match,
                       size_t *out_size);
+
+/* The same on the threads of a pool (NULL: on this one). */
+uint8_t *deflate_zlib_with(struct pool *pool, const uint8_t *src, size_t size,
+                           unsigned min_match, size_t *out_size);
 
 /* Expand the zlib stream at the start of src into exactly `dst_size` bytes.
  * Any input is safe: nothing outside the two buffers is read or written. What

@@ -10,8 +10,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
+
+#include "out_file.h"
 
 #define MESSAGE_SIZE 256
 
@@ -225,53 +225,18 @@ int image_read(const char *path, struct image *image, char *err,
 
 /// Writing ///
 
-static int write_stream(FILE *f, const struct image_file *file)
+int image_put(const char *path, const struct image_file *file, char *err,
+              size_t err_size)
 {
-    int good = fwrite(file->data, 1, file->size, f) == file->size;
+    struct out_file out;
 
-    good = fflush(f) == 0 && good;
-    return fclose(f) == 0 && good ? 0 : -1;
-}
-
-static int write_direct(const char *path, const struct image_file *file,
-                        char *err, size_t err_size)
-{
-    FILE *f = fopen(path, "wb");
-
-    if (!f || write_stream(f, file))
-        return image_error(err, err_size, "cannot write: %s", strerror(errno));
-    return 0;
-}
-
-static int write_replacing(const char *path, const struct image_file *file,
-                           char *err, size_t err_size)
-{
-    size_t length = strlen(path) + 32;
-    char *temporary = malloc(length);
-    int status;
-
-    if (!temporary)
-        return image_error(err, err_size, "no memory");
-    snprintf(temporary, length, "%s.tmp%ld", path, (long)getpid());
-    status = write_direct(temporary, file, err, err_size);
-    if (status == 0 && rename(temporary, path) != 0)
-        status =
-            image_error(err, err_size, "cannot replace: %s", strerror(errno));
-    if (status)
-        unlink(temporary);
-    free(temporary);
-    return status;
-}
-
-static int write_file(const char *path, const struct image_file *file,
-                      char *err, size_t err_size)
-{
-    struct stat st;
-
-    /* A link is not replaced: it may be /dev/stdout. */
-    if (lstat(path, &st) == 0 && !S_ISREG(st.st_mode))
-        return write_direct(path, file, err, err_size);
-    return write_replacing(path, file, err, err_size);
+    if (out_open(&out, path, err, err_size))
+        return -1;
+    if (out_write(&out, file->data, file->size, err, err_size)) {
+        out_abandon(&out);
+        return -1;
+    }
+    return out_close(&out, err, err_size);
 }
 
 static int check_image(const struct image *image, enum image_format format,
@@ -290,11 +255,15 @@ static int check_image(const struct image *image, enum image_format format,
     return 0;
 }
 
-static int encode(enum image_format format, const struct image *image,
-                  struct image_file *file, char *err, size_t err_size)
+int image_encode(enum image_format format, const struct image *image,
+                 struct pool *pool, struct image_file *file, char *err,
+                 size_t err_size)
 {
+    if (check_image(image, format, err, err_size))
+        return -1;
     switch (format) {
-    case IMAGE_PNG: return image_png_encode(image, file, err, err_size);
+    case IMAGE_PNG:
+        return image_png_encode_with(pool, image, file, err, err_size);
     case IMAGE_PFM: return image_pfm_encode(image, file, err, err_size);
     default:
         return image_pnm_encode(image, format == IMAGE_PGM ? 1 : 3, file, err,
@@ -307,12 +276,11 @@ int image_write_as(const char *path, enum image_format format,
 {
     char message[MESSAGE_SIZE] = "";
     struct image_file file = {NULL, 0};
-    int status = check_image(image, format, message, sizeof message);
+    int status =
+        image_encode(format, image, NULL, &file, message, sizeof message);
 
     if (status == 0)
-        status = encode(format, image, &file, message, sizeof message);
-    if (status == 0)
-        status = write_file(path, &file, message, sizeof message);
+        status = image_put(path, &file, message, sizeof message);
     free(file.data);
     if (status == 0)
         return 0;

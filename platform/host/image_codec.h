@@ -13,6 +13,7 @@
 #define BRUME_HOST_IMAGE_CODEC_H
 
 #include "image.h"
+#include "pool.h"
 
 /* An encoded file. The receiver frees data. */
 struct image_file {
@@ -37,10 +38,21 @@ int image_pfm_decode(const uint8_t *data, size_t size, struct image *image,
 /* Encoders are given valid images only: image_write_as checks. */
 int image_png_encode(const struct image *image, struct image_file *file,
                      char *err, size_t err_size);
+/* The same on the threads of a pool; the same bytes. */
+int image_png_encode_with(struct pool *pool, const struct image *image,
+                          struct image_file *file, char *err, size_t err_size);
 int image_pnm_encode(const struct image *image, int channels,
                      struct image_file *file, char *err, size_t err_size);
 int image_pfm_encode(const struct image *image, struct image_file *file,
                      char *err, size_t err_size);
+
+/* The two halves of image_write_as: a picture as a file of the format, and
+ * that file in its place (see out_file.h). Messages without the path. */
+int image_encode(enum image_format format, const struct image *image,
+                 struct pool *pool, struct image_file *file, char *err,
+                 size_t err_size);
+int image_put(const char *path, const struct image_file *file, char *err,
+              size_t err_size);
 
 /* Whether the three channels of an 8-bit image are equal everywhere; 1 for
  * grey images as well. */

@@ -10,7 +10,7 @@
 static const char k_help[] =
     "usage: brume COMMAND ...\n"
     "\n"
-    "  render   draw a baked volume\n"
+    "  render   draw a baked volume, as a picture or a sequence\n"
     "  info     say what a baked volume holds\n"
     "  compare  measure how two pictures differ\n"
     "\n"

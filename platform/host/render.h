@@ -1,17 +1,59 @@
 /* SPDX-License-Identifier: MIT */
-/* A whole frame on a host: threads over tiles of the core's rectangles. */
+/*
+ * Frames on a host: threads over tiles of the core's rectangles, pass by pass,
+ * and the state that goes from frame to frame.
+ *
+ * Errors: as in image.h.
+ */
 #ifndef BRUME_HOST_RENDER_H
 #define BRUME_HOST_RENDER_H
 
 #include "brume.h"
+#include "pool.h"
+#include "profile.h"
+#include "wide.h"
 
-/* Processors that are online, at least 1. */
-int render_processors(void);
+struct renderer;
 
-/* Renders the frame into dst, whose rows are `stride` bytes apart, with
- * `threads` threads (1 .. 256). The bytes do not depend on their number. With
- * `progress` a bar is drawn on stderr. Threads that cannot be made are done
- * without. */
+/* Where pixels go: rows `stride` bytes apart. */
+struct render_target {
+    int pixel_format;
+    void *dst;
+    size_t stride;
+};
+
+/* `threads` is 1 .. POOL_MAX; the bytes do not depend on it, nor on the kernel
+ * that marches. NULL without memory. */
+struct renderer *renderer_new(int threads, enum wide_kernel kernel);
+void renderer_free(struct renderer *renderer);
+
+/* Its threads, for other work between frames. */
+struct pool *renderer_pool(struct renderer *renderer);
+
+/* Where times are added from now on; NULL: they are not taken. */
+void renderer_profile(struct renderer *renderer, struct profile *profile);
+
+/* A bar on stderr over the next `frames` frames; 0: none. */
+void renderer_progress(struct renderer *renderer, unsigned frames);
+/* Removes a bar that has not reached its end. */
+void renderer_hush(struct renderer *renderer);
+
+/* What frames show from now on. It must stay where it is until the next call.
+ * The wide kernels make copies of it when they first need them. */
+void renderer_volume(struct renderer *renderer,
+                     const struct brume_volume *volume);
+
+/* Where its voxel (0,0,0) lies, in voxels from any fixed place, so that frames
+ * of volumes whose pools were cut from one grid at different places go
+ * together. (0,0,0) at first. */
+void renderer_anchor(struct renderer *renderer, const int32_t voxels[3]);
+
+/* One frame, after those before it. */
+int renderer_draw(struct renderer *renderer, const struct brume_scene *scene,
+                  const struct render_target *target, char *err,
+                  size_t err_size);
+
+/* A frame that needs no state, marched by the scalar kernel. */
 void render_frame(const struct brume_frame *frame, int pixel_format, void *dst,
                   size_t stride, int threads, bool progress);
 

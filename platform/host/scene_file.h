@@ -35,6 +35,20 @@ enum scene_key {
     SCENE_BACKGROUND,
     SCENE_OUTPUT,
     SCENE_SKIP,
+    SCENE_TEMPORAL,
+    SCENE_HISTORY_BITS,
+    SCENE_WINDOW,
+    SCENE_ALPHA,
+    SCENE_FETCH,
+    SCENE_CLAMP,
+    SCENE_GAMMA,
+    SCENE_SPATIAL,
+    SCENE_EDGE_FALLOFF,
+    SCENE_RESOLUTION,
+    SCENE_UPDATE,
+    SCENE_UPSAMPLE,
+    SCENE_SUBPIXEL,
+    SCENE_CUT,
     SCENE_KEYS
 };
 
@@ -53,6 +67,10 @@ struct scene_settings {
 int scene_set(struct scene_settings *settings, const char *text,
               const char *where, char *err, size_t err_size);
 int scene_read(struct scene_settings *settings, const char *path, char *err,
+               size_t err_size);
+
+/* Lines `key = value` for what has not been set. */
+int scene_fill(struct scene_settings *settings, const char *text, char *err,
                size_t err_size);
 
 /* The core's scene: defaults that suit the volume, then what was set. */

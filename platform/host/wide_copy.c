@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Copies of a volume for the wide march; wide.h says which, wide_lookup.h
+ * where a voxel is. Only what is not zero is written, so that pages of empty
+ * space stay the system's one page of zeros: it is the processor that looks up
+ * the cell.
+ */
+#include "wide.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "brume_lookup.h"
+
+#define PAGE 4096u
+
+/// Memory ///
+
+/* Zero bytes on a page boundary, and an element of `end` bytes more; NULL when
+ * it is too much, or elements cannot be counted in 32 bits. calloc takes them
+ * from the system untouched. */
+static void *reserve(struct wide_copy *c, int n, uint64_t bytes, size_t end)
+{
+    if (c->memory[n] != NULL || bytes + PAGE + end > c->most ||
+        bytes / end > 0xfffffffeu)
+        return NULL;
+    size_t size = (size_t)bytes + PAGE + end;
+    c->memory[n] = calloc(size, 1);
+    if (c->memory[n] == NULL)
+        return NULL;
+    c->most -= size;
+    uintptr_t at = (uintptr_t)c->memory[n];
+    return (void *)((at + PAGE - 1u) & ~(uintptr_t)(PAGE - 1u));
+}
+
+void wide_copy_init(struct wide_copy *copy, const struct brume_volume *volume,
+                    size_t most)
+{
+    memset(copy, 0, sizeof *copy);
+    copy->volume = volume;
+    copy->most = most;
+}
+
+void wide_copy_free(struct wide_copy *copy)
+{
+    for (int i = 0; i < 4; i++)
+        free(copy->memory[i]);
+    wide_copy_init(copy, copy->volume, 0);
+}
+
+/// Bricks ///
+
+/* The brick of a cell, or -1. */
+static int64_t brick_of(const struct brume_volume *v, uint64_t cell)
+{
+    uint32_t word = le32(v->cells[cell]);
+    return word & BRUME_CELL_EMPTY ? -1 : (int64_t)word;
+}
+
+static uint32_t code_of(const struct brume_volume *v, uint32_t brick,
+                        uint32_t i)
+{
+    struct kernel k = {v->format, v->side, false, false, false};
+    return code_at(v, brick, i, k);
+}
+
+/* What is done for each occupied cell. */
+typedef void each_brick(struct wide_copy *c, const uint32_t cell[3],
+                        uint32_t brick, void *to);
+
+static void for_bricks(struct wide_copy *c, each_brick *act, void *to)
+{
+    const struct brume_volume *v = c->volume;
+    uint64_t n = 0;
+    uint32_t cell[3];
+    for (cell[2] = 0; cell[2] < v->cell_count[2]; cell[2]++)
+        for (cell[1] = 0; cell[1] < v->cell_count[1]; cell[1]++)
+            for (cell[0] = 0; cell[0] < v->cell_count[0]; cell[0]++, n++)
+                if (brick_of(v, n) >= 0)
+                    act(c, cell, (uint32_t)brick_of(v, n), to);
+}
+
+/* Number of a cell's first voxel in pages of 16^3; rows are 16 further, slices
+ * 256. */
+static size_t first_in_pages(const struct brume_volume *v,
+                             const uint32_t cell[3])
+{
+    size_t row = (v->cell_count[0] + 1u) / 2u;
+    size_t plane = row * ((v->cell_count[1] + 1u) / 2u);
+    size_t page = (cell[2] >> 1) * plane + (cell[1] >> 1) * row + (cell[0] >> 1);
+    return page << 12 | (cell[2] & 1u) << 11 | (cell[1] & 1u) << 7 |
+           (cell[0] & 1u) << 3;
+}
+
+static uint64_t voxels_in_pages(const struct brume_volume *v)
+{
+    uint64_t n = 4096;
+    for (int i = 0; i < 3; i++)
+        n *= (v->cell_count[i] + 1u) / 2u;
+    return n;
+}
+
+/// Bytes ///
+
+static void copy_bytes(struct wide_copy *c, const uint32_t cell[3],
+                       uint32_t brick, void *to)
+{
+    const struct brume_volume *v = c->volume;
+    const uint8_t *from = v->pool + (size_t)brick * v->brick_bytes;
+    uint8_t *page = (uint8_t *)to + first_in_pages(v, cell);
+    uint32_t side = v->side;
+    for (uint32_t z = 0; z < 8; z++)
+        for (uint32_t y = 0; y < 8; y++)
+            memcpy(page + (z << 8 | y << 4), from + (z * side + y) * side, 8);
+}
+
+static void make_bytes(struct wide_copy *c)
+{
+    uint64_t size = voxels_in_pages(c->volume);
+    uint8_t *to = reserve(c, 0, size, 1);
+    if (to == NULL)
+        return;
+    for_bricks(c, copy_bytes, to);
+    c->bytes = to;
+    c->bytes_size = (size_t)size;
+}
+
+/// Halves ///
+
+static void copy_halves(struct wide_copy *c, const uint32_t cell[3],
+                        uint32_t brick, void *to)
+{
+    const struct brume_volume *v = c->volume;
+    struct kernel k = {v->format, v->side, false, false, false};
+    uint16_t *page = (uint16_t *)to + first_in_pages(v, cell);
+    for (uint32_t i = 0; i < 512; i++) {
+        uint32_t x = i & 7u, y = i >> 3 & 7u, z = i >> 6;
+        uint32_t code = code_of(v, brick, x + v->side * (y + v->side * z));
+        page[z << 8 | y << 4 | x] =
+            (uint16_t)density_of_code(v, brick, code, 0, k);
+    }
+}
+
+static void make_halves(struct wide_copy *c)
+{
+    uint64_t n = voxels_in_pages(c->volume);
+    uint16_t *to = reserve(c, 1, 2 * n, 2);
+    if (to == NULL)
+        return;
+    for_bricks(c, copy_halves, to);
+    c->halves = to;
+    c->halves_size = (size_t)n;
+}
+
+/// Octets ///
+
+/* Those of one brick: of its apron, or of voxels that have all neighbours in
+ * it. */
+static void copy_octets_inside(struct wide_copy *c, const uint32_t cell[3],
+                               uint32_t brick, void *to)
+{
+    const struct brume_volume *v = c->volume;
+    uint32_t side = v->side, row = v->cell_count[0];
+    size_t number = ((size_t)cell[2] * v->cell_count[1] + cell[1]) * row +
+                    cell[0];
+    uint64_t *page = (uint64_t *)to + (number << 9);
+    for (uint32_t z = 0; z < side - 1u; z++)
+        for (uint32_t y = 0; y < side - 1u; y++)
+            for (uint32_t x = 0; x < side - 1u; x++) {
+                uint64_t octet = 0;
+                for (uint32_t n = 0; n < 8; n++) {
+                    uint32_t i = x + (n & 1u) +
+                                 side * (y + (n >> 1 & 1u) +
+                                         side * (z + (n >> 2)));
+                    octet |= (uint64_t)code_of(v, brick, i) << 8 * n;
+                }
+                page[z << 6 | y << 3 | x] = octet;
+            }
+}
+
+/* The octets that a voxel is a byte of, in up to eight cells. */
+static void add_voxel(struct wide_copy *c, uint64_t *to, uint32_t x, uint32_t y,
+                      uint32_t z, uint64_t code)
+{
+    const struct brume_volume *v = c->volume;
+    for (uint32_t n = 0; n < 8; n++) {
+        uint32_t a = x - (n & 1u), b = y - (n >> 1 & 1u), d = z - (n >> 2);
+        if ((a | b | d) >> 31) /* below the pool */
+            continue;
+        size_t number = ((size_t)(d >> 3) * v->cell_count[1] + (b >> 3)) *
+                            v->cell_count[0] +
+                        (a >> 3);
+        to[number << 9 | (d & 7u) << 6 | (b & 7u) << 3 | (a & 7u)] |=
+            code << 8 * n;
+    }
+}
+
+static void copy_octets(struct wide_copy *c, const uint32_t cell[3],
+                        uint32_t brick, void *to)
+{
+    for (uint32_t i = 0; i < 512; i++) {
+        uint32_t code = code_of(c->volume, brick, i);
+        if (code != 0)
+            add_voxel(c, to, cell[0] << 3 | (i & 7u),
+                      cell[1] << 3 | (i >> 3 & 7u), cell[2] << 3 | i >> 6,
+                      code);
+    }
+}
+
+static uint64_t cells_of(const struct brume_volume *v)
+{
+    return (uint64_t)v->cell_count[0] * v->cell_count[1] * v->cell_count[2];
+}
+
+static void make_octets(struct wide_copy *c)
+{
+    const struct brume_volume *v = c->volume;
+    uint64_t n = cells_of(v) << 9;
+    bool inside = v->side == 9 || v->format != BRUME_U8;
+    uint64_t *to = reserve(c, 2, 8 * n, 8);
+    if (to == NULL)
+        return;
+    for_bricks(c, inside ? copy_octets_inside : copy_octets, to);
+    c->octets = to;
+    c->octets_size = (size_t)n;
+}
+
+static void make_ranges(struct wide_copy *c)
+{
+    const struct brume_volume *v = c->volume;
+    uint64_t n = cells_of(v);
+    uint32_t *to = reserve(c, 3, 4 * n, 4);
+    if (to == NULL)
+        return;
+    for (uint64_t i = 0; i < n; i++)
+        if (brick_of(v, i) >= 0)
+            to[i] = le32(v->ranges[brick_of(v, i)]);
+    c->ranges = to;
+}
+
+void wide_copy_prepare(struct wide_copy *copy, const struct brume_frame *frame)
+{
+    struct wide_copy *c = copy;
+    const struct brume_volume *v = c->volume;
+    bool u8 = v->format == BRUME_U8;
+    bool trilinear = frame->kernel >> 2 & 1, clamp = frame->kernel & 1;
+    if (!trilinear && u8 && c->bytes == NULL)
+        make_bytes(c);
+    if ((trilinear ? clamp || (!u8 && v->side == 8) : !u8) && c->halves == NULL)
+        make_halves(c);
+    if (trilinear && !clamp && c->octets == NULL)
+        make_octets(c);
+    if (trilinear && !clamp && !u8 && c->ranges == NULL)
+        make_ranges(c);
+}

@@ -1,0 +1,463 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Densities at many positions: what core/brume_lookup.h defines, in passes
+ * over arrays. A pass does one thing for all positions, so that its chains of
+ * dependent instructions are short and many of them are under way at once; one
+ * position after the other, a processor waits for loads most of the time.
+ */
+#ifndef BRUME_HOST_WIDE_LOOKUP_H
+#define BRUME_HOST_WIDE_LOOKUP_H
+
+#include "brume_lookup.h"
+#include "wide.h"
+#include "wide_lanes.h"
+
+/* A byte of every asset that is zero: the header's, at 26. */
+#define ZERO_BYTE 26u
+
+/* Groups of lanes that are looked up together. */
+#define LOOKUPS 16u
+
+/* at[g], voxel[g] and place[g] are set by want(); d[g], and cell[g] come from
+ * look_up(). */
+struct lookups {
+    uint32_t at[LOOKUPS][WIDE_LANES];    /* cell number */
+    uint32_t voxel[LOOKUPS][WIDE_LANES]; /* in its brick; or UNWANTED */
+    uint32_t cell[LOOKUPS][WIDE_LANES];  /* its word, UNWANTED or'ed in */
+    uint32_t d[LOOKUPS][WIDE_LANES];     /* 0 where there is none */
+    uint32_t x[LOOKUPS][WIDE_LANES]; /* for trilinear */
+    uint32_t y[LOOKUPS][WIDE_LANES];
+    uint32_t z[LOOKUPS][WIDE_LANES];
+    uint32_t weight[LOOKUPS][WIDE_LANES]; /* bytes, for octets */
+} __attribute__((aligned(64)));
+
+#define UNWANTED BRUME_CELL_EMPTY
+
+/* Has memory changed behind the compiler's back? Not so, but it must load what
+ * it stored word by word instead of taking vectors apart. */
+#define FORGET(array) __asm__("" : "+m"(array))
+
+/// Voxels ///
+
+LANES_INLINE lanes cell_number(const struct brume_volume *v, lanes x, lanes y,
+                               lanes z)
+{
+    uint32_t row = v->cell_count[0];
+    uint32_t plane = row * v->cell_count[1];
+    return (z >> 19) * plane + (y >> 19) * row + (x >> 19);
+}
+
+LANES_INLINE lanes voxel_number(lanes x, lanes y, lanes z, struct kernel k)
+{
+    if (k.side == 8)
+        return (x >> 16 & 7u) | (y >> 13 & 56u) | (z >> 10 & 448u);
+    return (x >> 16 & 7u) + (y >> 16 & 7u) * 9u + (z >> 16 & 7u) * 81u;
+}
+
+/* Bytes from the asset's start to voxel i of a brick; nibbles share one. */
+LANES_INLINE lanes byte_of(const struct brume_volume *v, lanes brick, lanes i,
+                           struct kernel k)
+{
+    uint32_t pool = (uint32_t)(v->pool - v->asset);
+    if (k.format == BRUME_U4R)
+        return brick * (k.side == 9 ? 368u : 256u) + (i >> 1) + pool;
+    if (k.side == 9)
+        return brick * 732u + i + pool;
+    return (brick << 9) + i + pool;
+}
+
+LANES_INLINE lanes code_of(lanes byte, lanes i, struct kernel k)
+{
+    return k.format == BRUME_U4R ? byte >> ((i & 1u) << 2) & 15u : byte;
+}
+
+/* density_of_code, for bricks whose range was loaded. */
+LANES_INLINE lanes density_of(lanes range, lanes code, uint32_t q,
+                              struct kernel k)
+{
+    if (k.format == BRUME_U8)
+        return q ? code : code << 8;
+    lanes product = code * (range >> 16);
+    return (range & 0xffffu) + (q ? (product + 128u) >> 8 : product);
+}
+
+LANES_INLINE lanes clamp_density(const struct brume_frame *f, lanes d,
+                                 struct kernel k)
+{
+    return k.clamp ? lanes_min(d, lanes_of(f->max_density)) : d;
+}
+
+/// Nearest ///
+
+LANES_INLINE void want_cell(struct lookups *l, uint32_t g,
+                            const struct brume_frame *f, lanes x, lanes y,
+                            lanes z, lanes_mask wanted, struct kernel k)
+{
+    lanes voxel = voxel_number(x, y, z, k);
+    lanes_store(l->at[g],
+                lanes_where(wanted, cell_number(f->volume, x, y, z)));
+    lanes_store(l->voxel[g], lanes_select(wanted, voxel, lanes_of(UNWANTED)));
+    if (k.trilinear) {
+        lanes_store(l->x[g], x);
+        lanes_store(l->y[g], y);
+        lanes_store(l->z[g], z);
+    }
+}
+
+LANES_INLINE void look_up_cells(struct lookups *l, uint32_t n,
+                                const struct brume_frame *f)
+{
+    FORGET(l->at);
+    for (uint32_t g = 0; g < n; g++)
+        lanes_store(l->cell[g], gather_words_at(f->volume->cells, l->at[g]) |
+                                    (lanes_load(l->voxel[g]) & UNWANTED));
+}
+
+/* From `at`, the bytes' places. */
+LANES_INLINE void look_up_nearest(struct lookups *l, uint32_t n,
+                                  const struct brume_frame *f, struct kernel k)
+{
+    const struct brume_volume *v = f->volume;
+    FORGET(l->at);
+    for (uint32_t g = 0; g < n; g++) {
+        lanes voxel = lanes_load(l->voxel[g]);
+        lanes cell = gather_words_at(v->cells, l->at[g]) | (voxel & UNWANTED);
+        lanes at = byte_of(v, cell, voxel, k);
+        lanes_store(l->cell[g], cell);
+        lanes_store(l->at[g],
+                    lanes_select(mask_high(cell), lanes_of(ZERO_BYTE), at));
+    }
+    FORGET(l->at);
+    for (uint32_t g = 0; g < n; g++) {
+        lanes code = gather_bytes_at(v->asset, l->at[g]);
+        lanes cell = lanes_load(l->cell[g]);
+        code = code_of(code, lanes_load(l->voxel[g]), k);
+        if (is_narrow(k)) {
+            lanes_store(l->d[g], code);
+            continue;
+        }
+        lanes_mask none = mask_high(cell);
+        lanes range = lanes_of(0);
+        if (k.format != BRUME_U8)
+            range = gather_words(v->ranges, lanes_unless(none, cell));
+        lanes d = clamp_density(f, density_of(range, code, 0, k), k);
+        lanes_store(l->d[g], lanes_unless(none, d));
+    }
+}
+
+/// Trilinear ///
+
+LANES_INLINE lanes mix_lanes(lanes a, lanes b, lanes w)
+{
+    return (a << 8) + (b - a) * w;
+}
+
+/* Codes of voxel i of bricks, for lanes that have one. */
+LANES_INLINE lanes codes_at(const struct brume_volume *v, lanes brick, lanes i,
+                            lanes_mask wanted, struct kernel k)
+{
+    lanes at = lanes_select(wanted, byte_of(v, brick, i, k),
+                            lanes_of(ZERO_BYTE));
+    return code_of(gather_bytes(v->asset, at), i, k);
+}
+
+/* As trilinear_in_brick. */
+LANES_INLINE lanes mix_in_bricks(const struct brume_frame *f, lanes brick,
+                                 lanes x, lanes y, lanes z, lanes_mask wanted,
+                                 struct kernel k)
+{
+    const struct brume_volume *v = f->volume;
+    lanes i = voxel_number(x, y, z, k), range = lanes_of(0);
+    lanes wx = x >> 8 & 255u, wy = y >> 8 & 255u, wz = z >> 8 & 255u;
+    lanes plane[2];
+    uint32_t side = k.side;
+    for (uint32_t n = 0; n < 2; n++, i += side * side) {
+        lanes low = mix_lanes(codes_at(v, brick, i, wanted, k),
+                              codes_at(v, brick, i + 1u, wanted, k), wx);
+        lanes high =
+            mix_lanes(codes_at(v, brick, i + side, wanted, k),
+                      codes_at(v, brick, i + (side + 1u), wanted, k), wx);
+        plane[n] = mix_lanes(low, high, wy);
+    }
+    lanes code = (mix_lanes(plane[0], plane[1], wz) + 0x8000u) >> 16;
+    if (k.format != BRUME_U8)
+        range = gather_words(v->ranges, lanes_where(wanted, brick));
+    return lanes_where(wanted, density_of(range, code, 8, k));
+}
+
+/* As voxel_density. */
+LANES_INLINE lanes voxel_densities(const struct brume_frame *f, lanes x,
+                                   lanes y, lanes z, lanes_mask wanted,
+                                   struct kernel k)
+{
+    const struct brume_volume *v = f->volume;
+    lanes at = lanes_where(wanted, cell_number(v, x, y, z));
+    lanes cell = gather_words(v->cells, at), range = lanes_of(0);
+    wanted = mask_less_those(wanted, mask_high(cell));
+    if (!mask_any(wanted))
+        return lanes_of(0);
+    lanes code = codes_at(v, cell, voxel_number(x, y, z, k), wanted, k);
+    if (k.format != BRUME_U8)
+        range = gather_words(v->ranges, lanes_where(wanted, cell));
+    lanes d = clamp_density(f, density_of(range, code, 0, k), k);
+    return lanes_where(wanted, d);
+}
+
+/* As trilinear_anywhere. */
+static inline lanes mix_anywhere(const struct brume_frame *f, lanes x, lanes y,
+                                 lanes z, lanes_mask wanted, struct kernel k)
+{
+    lanes wx = x >> 8 & 255u, wy = y >> 8 & 255u, wz = z >> 8 & 255u;
+    lanes plane[2], x1 = x + 0x10000u, y1 = y + 0x10000u;
+    for (uint32_t n = 0; n < 2; n++, z += 0x10000u) {
+        lanes low = mix_lanes(voxel_densities(f, x, y, z, wanted, k),
+                              voxel_densities(f, x1, y, z, wanted, k), wx);
+        lanes high = mix_lanes(voxel_densities(f, x, y1, z, wanted, k),
+                               voxel_densities(f, x1, y1, z, wanted, k), wx);
+        plane[n] = (mix_lanes(low, high, wy) + 128u) >> 8;
+    }
+    return (mix_lanes(plane[0], plane[1], wz) + 0x8000u) >> 16;
+}
+
+LANES_INLINE lanes_mask on_high_faces(lanes x, lanes y, lanes z)
+{
+    lanes last = lanes_of(7u << 16);
+    return mask_or(mask_equal(x & last, last),
+                   mask_or(mask_equal(y & last, last),
+                           mask_equal(z & last, last)));
+}
+
+LANES_INLINE void look_up_trilinear(struct lookups *l, uint32_t n,
+                                    const struct brume_frame *f,
+                                    struct kernel k)
+{
+    look_up_cells(l, n, f);
+    for (uint32_t g = 0; g < n; g++) {
+        lanes x = lanes_load(l->x[g]), y = lanes_load(l->y[g]);
+        lanes z = lanes_load(l->z[g]), cell = lanes_load(l->cell[g]);
+        lanes_mask brick = mask_less(cell, lanes_of(BRUME_CELL_EMPTY));
+        lanes d = lanes_of(0);
+        if (k.side == 8 || k.clamp) {
+            lanes_mask wanted =
+                mask_less(lanes_load(l->voxel[g]), lanes_of(UNWANTED));
+            lanes_mask face = mask_and(wanted, on_high_faces(x, y, z));
+            lanes_mask near =
+                mask_and(face, mask_less(cell, lanes_of(BRUME_CELL_EMPTY + 2u)));
+            lanes_mask rest = k.clamp ? mask_or(brick, near) : near;
+            brick = mask_less_those(brick, rest);
+            if (mask_any(rest)) {
+                d = lanes_where(rest, mix_anywhere(f, x, y, z, rest, k));
+                /* Leaps count from a cell without density. */
+                lanes_store(l->cell[g],
+                            lanes_select(rest, lanes_of(0), cell));
+            }
+        }
+        if (mask_any(brick))
+            d |= mix_in_bricks(f, cell, x, y, z, brick, k);
+        lanes_store(l->d[g], d);
+    }
+}
+
+/// Copies ///
+
+/* Voxels in pages of 16^3, page by page. */
+struct pages {
+    uint32_t row, plane, end; /* voxels from page to page; of all */
+};
+
+LANES_INLINE struct pages pages_of(const struct wide_copy *c, size_t end)
+{
+    const uint16_t *n = c->volume->cell_count;
+    uint32_t row = (n[0] + 1u) / 2u;
+    struct pages p = {row << 12, (row * ((n[1] + 1u) / 2u)) << 12,
+                      (uint32_t)end};
+    return p;
+}
+
+LANES_INLINE lanes x_in_pages(lanes x)
+{
+    return (x >> 16 & 15u) | (x >> 8 & 0xfffff000u);
+}
+
+LANES_INLINE lanes y_in_pages(lanes y, struct pages p)
+{
+    return (y >> 12 & 240u) + (y >> 20) * p.row;
+}
+
+LANES_INLINE lanes z_in_pages(lanes z, struct pages p)
+{
+    return (z >> 8 & 3840u) + (z >> 20) * p.plane;
+}
+
+/* Octets in pages of 8^3, cell by cell. */
+LANES_INLINE lanes octet_number(const struct wide_copy *c, lanes x, lanes y,
+                                lanes z)
+{
+    uint32_t row = c->volume->cell_count[0];
+    uint32_t plane = row * c->volume->cell_count[1];
+    lanes cell = (z >> 19) * (plane << 9) + (y >> 19) * (row << 9);
+    lanes voxel = (x >> 16 & 7u) | (y >> 13 & 56u) | (z >> 10 & 448u);
+    return cell + ((x >> 10 & 0xfffffe00u) | voxel);
+}
+
+/* Which copy a kernel's lookups begin with. */
+LANES_INLINE bool reads_octets(struct kernel k)
+{
+    return k.trilinear && !k.clamp;
+}
+
+LANES_INLINE void want_copied(struct lookups *l, uint32_t g,
+                              const struct wide_copy *c, lanes x, lanes y,
+                              lanes z, lanes_mask wanted, struct kernel k)
+{
+    struct pages p =
+        pages_of(c, k.trilinear || k.format != BRUME_U8 ? c->halves_size
+                                                        : c->bytes_size);
+    if (reads_octets(k)) {
+        lanes end = lanes_of((uint32_t)c->octets_size);
+        lanes at = octet_number(c, x, y, z);
+        lanes_store(l->at[g], lanes_select(wanted, at, end));
+    } else if (!k.trilinear) {
+        lanes at = x_in_pages(x) + y_in_pages(y, p) + z_in_pages(z, p);
+        lanes_store(l->at[g], lanes_select(wanted, at, lanes_of(p.end)));
+    }
+    if (!k.trilinear)
+        return;
+    lanes_store(l->weight[g],
+                (x >> 8 & 255u) | (y & 0xff00u) | (z << 8 & 0xff0000u));
+    if (k.clamp || k.side == 8) {
+        lanes_store(l->x[g], x);
+        lanes_store(l->y[g], y);
+        lanes_store(l->z[g], z);
+    }
+    if (k.clamp)
+        lanes_store(l->voxel[g], lanes_select(wanted, lanes_of(0),
+                                              lanes_of(UNWANTED)));
+}
+
+/* Density of voxels of the halves. */
+LANES_INLINE lanes half_at(const struct brume_frame *f,
+                           const struct wide_copy *c, lanes at,
+                           lanes_mask wanted, struct kernel k)
+{
+    lanes end = lanes_of((uint32_t)c->halves_size);
+    return clamp_density(
+        f, gather_halves(c->halves, lanes_select(wanted, at, end)), k);
+}
+
+/* As trilinear_anywhere of the core. */
+LANES_INLINE lanes mix_halves(const struct brume_frame *f,
+                              const struct wide_copy *c, lanes x, lanes y,
+                              lanes z, lanes_mask wanted, struct kernel k)
+{
+    struct pages p = pages_of(c, 0);
+    lanes wx = x >> 8 & 255u, wy = y >> 8 & 255u, wz = z >> 8 & 255u;
+    lanes one = lanes_of(0x10000u), plane[2];
+    lanes x0 = x_in_pages(x), x1 = x_in_pages(x + one);
+    lanes y0 = y_in_pages(y, p), y1 = y_in_pages(y + one, p);
+    for (uint32_t n = 0; n < 2; n++, z += one) {
+        lanes low = z_in_pages(z, p) + y0, high = z_in_pages(z, p) + y1;
+        low = mix_lanes(half_at(f, c, low + x0, wanted, k),
+                        half_at(f, c, low + x1, wanted, k), wx);
+        high = mix_lanes(half_at(f, c, high + x0, wanted, k),
+                         half_at(f, c, high + x1, wanted, k), wx);
+        plane[n] = (mix_lanes(low, high, wy) + 128u) >> 8;
+    }
+    return (mix_lanes(plane[0], plane[1], wz) + 0x8000u) >> 16;
+}
+
+/* From octets; but where these need the ranges of several bricks, halves. */
+LANES_INLINE lanes trilinear_copied(const struct lookups *l, uint32_t g,
+                                    const struct brume_frame *f,
+                                    const struct wide_copy *c, struct kernel k)
+{
+    lanes at = lanes_load(l->at[g]);
+    lanes d = mean_of_octets(c->octets, l->at[g], lanes_load(l->weight[g]));
+    if (k.format == BRUME_U8)
+        return d;
+    d = density_of(gather_words(c->ranges, at >> 9), d, 8, k);
+    if (k.side == 9)
+        return d;
+    lanes x = lanes_load(l->x[g]), y = lanes_load(l->y[g]);
+    lanes z = lanes_load(l->z[g]);
+    lanes_mask face = mask_and(on_high_faces(x, y, z),
+                               mask_less(at, lanes_of((uint32_t)c->octets_size)));
+    return mask_any(face)
+               ? lanes_select(face, mix_halves(f, c, x, y, z, face, k), d)
+               : d;
+}
+
+LANES_INLINE void look_up_copied(struct lookups *l, uint32_t n,
+                                 const struct brume_frame *f,
+                                 const struct wide_copy *c, struct kernel k)
+{
+    FORGET(l->at);
+    for (uint32_t g = 0; g < n; g++) {
+        lanes d;
+        if (reads_octets(k)) {
+            d = trilinear_copied(l, g, f, c, k);
+        } else if (k.trilinear) {
+            lanes_mask wanted = mask_less(lanes_load(l->voxel[g]), lanes_of(1));
+            d = mix_halves(f, c, lanes_load(l->x[g]), lanes_load(l->y[g]),
+                           lanes_load(l->z[g]), wanted, k);
+            d = lanes_where(wanted, d);
+        } else if (k.format == BRUME_U8) {
+            d = gather_bytes_at(c->bytes, l->at[g]);
+            if (k.clamp)
+                d = clamp_density(f, d << 8, k);
+        } else {
+            d = clamp_density(f, gather_halves_at(c->halves, l->at[g]), k);
+        }
+        lanes_store(l->d[g], d);
+    }
+}
+
+/// Both ///
+
+/* Wants the density at x, y, z, in group g; 0 where not wanted. */
+LANES_INLINE void want(struct lookups *l, uint32_t g,
+                       const struct brume_frame *f, const struct wide_copy *c,
+                       const lanes p[3], lanes_mask wanted, struct kernel k)
+{
+    if (c != NULL)
+        want_copied(l, g, c, p[0], p[1], p[2], wanted, k);
+    else
+        want_cell(l, g, f, p[0], p[1], p[2], wanted, k);
+}
+
+/* Densities of the first n groups. */
+LANES_INLINE void look_up(struct lookups *l, uint32_t n,
+                          const struct brume_frame *f,
+                          const struct wide_copy *c, struct kernel k)
+{
+    if (c != NULL)
+        look_up_copied(l, n, f, c, k);
+    else if (k.trilinear)
+        look_up_trilinear(l, n, f, k);
+    else
+        look_up_nearest(l, n, f, k);
+}
+
+/* After look_up: the words of group g's cells. The high bit is set where they
+ * are empty and may be leapt over; copies know only of lanes with a density of
+ * 0, the others have 0. */
+LANES_INLINE lanes cells_to_leap(const struct lookups *l, uint32_t g,
+                                 const struct brume_frame *f,
+                                 const struct wide_copy *c, const lanes p[3],
+                                 lanes_mask wanted, struct kernel k)
+{
+    if (c == NULL)
+        return lanes_load(l->cell[g]);
+    wanted = mask_and(wanted, mask_equal(lanes_load(l->d[g]), lanes_of(0)));
+    if (!f->skip || !mask_any(wanted))
+        return lanes_of(0);
+    lanes at = lanes_where(wanted, cell_number(f->volume, p[0], p[1], p[2]));
+    lanes cell = gather_words(f->volume->cells, at);
+    if (k.trilinear && f->leap_margin != 0) /* beside a brick: not here */
+        wanted = mask_less_those(
+            wanted, mask_and(on_high_faces(p[0], p[1], p[2]),
+                             mask_less(cell, lanes_of(BRUME_CELL_EMPTY + 2u))));
+    return lanes_where(wanted, cell);
+}
+
+#endif
