@@ -72,6 +72,14 @@ static void set_rotation(struct brume_scene *s, const struct brume_volume *v,
     orbit(s, v, 30 + 2.0 * frame, 10, 150);
 }
 
+/* A few tenths of a pixel per frame. */
+static void set_drift(struct brume_scene *s, const struct brume_volume *v,
+                      int frame)
+{
+    s->fov = 22 << 16;
+    orbit(s, v, 30 + 0.25 * frame, 10, 150 - 0.1 * frame);
+}
+
 static void set_dolly(struct brume_scene *s, const struct brume_volume *v,
                       int frame)
 {
@@ -165,6 +173,8 @@ const struct scenario scenarios[] = {
      NULL},
     {"rotation", "the camera goes around, 2 degrees per frame", 24, 2, false, 0,
      set_rotation, NULL},
+    {"drift", "slowly around, some tenths of a pixel per frame", 40, 2, false,
+     0, set_drift, NULL},
     {"dolly", "ahead past the edge of the cloud", 24, 2, false, 0, set_dolly,
      NULL},
     {"enter", "the camera enters the cloud", 24, 2, false, 0, set_enter, NULL},

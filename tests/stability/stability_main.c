@@ -247,6 +247,15 @@ static void check_blur(const char *scenario)
               "%s: taa is nearer to the truth than single frames", scenario);
 }
 
+/* Where little moves, history must be worth something. */
+static void check_drift(void)
+{
+    double none = of("drift", "none")->ghosting;
+    double taa = of("drift", "taa")->ghosting;
+    tap_check(2 * taa <= none, "drift: taa leaves %.2f of %.2f, at most half",
+              taa, none);
+}
+
 /* 10,000 frames are as good as 64. */
 static void check_long(const char *method)
 {
@@ -277,6 +286,7 @@ static void check_bounds(void)
         check_ghosts(motion[i]);
         check_blur(motion[i]);
     }
+    check_drift();
     for (size_t i = 0; i < sizeof steady / sizeof steady[0]; i++)
         check_long(steady[i]);
 }
