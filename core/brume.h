@@ -91,21 +91,22 @@ extern "C" {
 #ifndef BRUME_WITH_NOISE /* jitter; 0.6 KiB */
 #define BRUME_WITH_NOISE 1
 #endif
-/* All of "Sequences" below, brume_march_rect and brume_pack_rect; or which of
- * it: */
+/* All of "Sequences" below, brume_march_rect and brume_pack_rect, or which of
+ * it. Passes from rays to pixels take 1.7 KiB, and depth adds 40 bytes to each
+ * kernel. */
 #ifndef BRUME_WITH_SEQUENCES
 #define BRUME_WITH_SEQUENCES 1
 #endif
-#ifndef BRUME_WITH_TEMPORAL /* temporal = ema and window, update, subpixel */
+#ifndef BRUME_WITH_TEMPORAL /* ema, window, update, subpixel; 3.5 KiB */
 #define BRUME_WITH_TEMPORAL BRUME_WITH_SEQUENCES
 #endif
-#ifndef BRUME_WITH_TAA /* temporal = taa; needs the one above */
+#ifndef BRUME_WITH_TAA /* taa; 2.4 KiB; needs the one above */
 #define BRUME_WITH_TAA (BRUME_WITH_SEQUENCES && BRUME_WITH_TEMPORAL)
 #endif
-#ifndef BRUME_WITH_SPATIAL /* spatial filters */
+#ifndef BRUME_WITH_SPATIAL /* spatial filters; 0.7 KiB */
 #define BRUME_WITH_SPATIAL BRUME_WITH_SEQUENCES
 #endif
-#ifndef BRUME_WITH_RESOLUTION /* half and quarter */
+#ifndef BRUME_WITH_RESOLUTION /* half and quarter; 0.6 KiB */
 #define BRUME_WITH_RESOLUTION BRUME_WITH_SEQUENCES
 #endif
 

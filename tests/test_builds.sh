@@ -78,9 +78,17 @@ try clang_sanitizers 22 clang -O1 $sanitize -DBRUME_FIXED_DEBUG
 
 # The configurations that docs/TARGETS.md offers: the scenes that each supports,
 # at least so many.
-for config in smallest=20 u4r_nearest=2 u8r_trilinear=4 preview=23 full=32; do
+for config in smallest=20 u4r_nearest=2 u8r_trilinear=4 preview=23 full=53; do
     try "config_${config%=*}" "${config#*=}" gcc -Os \
         -DBRUME_CONFIG="\"targets/configs/${config%=*}.h\""
+done
+
+# Parts of what sequences need, with one format and lookup.
+for part in TEMPORAL=32 TAA=37 SPATIAL=33 RESOLUTION=39 NOISE=5; do
+    try "without_$(echo "${part%=*}" | tr A-Z a-z)" "${part#*=}" gcc -Os \
+        -DBRUME_WITH_U8R=0 -DBRUME_WITH_U4R=0 -DBRUME_WITH_TRILINEAR=0 \
+        -DBRUME_WITH_UNIFORM=0 -DBRUME_WITH_APRON=0 \
+        "-DBRUME_WITH_${part%=*}=0"
 done
 
 judge
@@ -123,6 +131,10 @@ no_format="-DBRUME_WITH_U8=0 -DBRUME_WITH_U8R=0 -DBRUME_WITH_U4R=0"
 check "no format: an #error" refuses "$no_format" "no format"
 check "no lookup: an #error" refuses \
     "-DBRUME_WITH_NEAREST=0 -DBRUME_WITH_TRILINEAR=0" "no lookup"
+check "taa alone: an #error" refuses \
+    "-DBRUME_WITH_TEMPORAL=0 -DBRUME_WITH_TAA=1" "BRUME_WITH_TAA needs"
+check "sequences without the whole: an #error" refuses \
+    "-DBRUME_WITH_SEQUENCES=0 -DBRUME_WITH_SPATIAL=1" "set BRUME_WITH_SEQ"
 for limit in MAX_SIZE=16385 MAX_SIZE=0 MAX_LOG_SAMPLES=17 \
     MAX_UNIFORM_SAMPLES=4097 SPAN=65 SPAN=0; do
     check "$limit: an #error" refuses "-DBRUME_$limit" "BRUME_${limit%=*} is"

@@ -112,11 +112,16 @@ static int draw(struct brume_frame *f, struct brume_state *state,
 #if BRUME_WITH_SEQUENCES
     size_t work_size = brume_work_bytes(f, f->width);
     void *work = malloc(work_size);
-    int error = brume_begin_state(state, f);
+    int error = BRUME_OK;
+    if (work == NULL)
+        abort();
+#if BRUME_WITH_TEMPORAL
+    error = brume_begin_state(state, f);
     if (!error)
         error = brume_trace_rect(f, state, 0, 0, f->lattice[0], f->lattice[1]);
     if (!error)
         error = brume_resolve_rect(f, state, 0, 0, f->grid[0], f->grid[1]);
+#endif
     if (!error)
         error = brume_show_rect(f, state, 0, 0, f->width, f->height,
                                 pixel_format, dst, stride, work, work_size);
@@ -142,7 +147,7 @@ uint8_t *test_scene_render(const struct test_scene *scene,
     if (pixels == NULL)
         abort();
     *error = BRUME_OK;
-#if BRUME_WITH_SEQUENCES
+#if BRUME_WITH_TEMPORAL
     test_scene_frame(&s, t, volume, 0);
     size_t bytes = brume_state_bytes(&s);
     state = malloc(bytes > sizeof *state ? bytes : sizeof *state);
