@@ -33,7 +33,8 @@ refuses()
 check "it refuses what is no asset" refuses
 
 for target in demo test help install clean golden bench; do
-    check "make $target is a target" grep -q "^$target:.*## " Makefile
+    check "make $target is a target" grep -q "^$target:.*## " Makefile \
+        bench/bench.mk
 done
 installs()
 {

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# bench.sh: what the choices of order, apron, format, skipping and threads cost
-# and gain, as ratios of times and bytes. Asserts nothing.
+# formats.sh: what the choices of order, apron, format, skipping and threads
+# cost and gain, as ratios of times and bytes. Asserts nothing.
 #
 #   BUILD=dir  our programs         RUNS=n    runs of each (7)
 #   DATA=dir   real volumes         SIZE=WxH  of the pictures (640x360)
@@ -12,12 +12,12 @@
 # picture. All but the last line of a volume use one thread.
 set -eu
 : "${BUILD:=build}" "${DATA:=../shared/data}" "${RUNS:=7}" "${SIZE:=640x360}"
-dir=$BUILD/bench
+dir=$BUILD/bench/formats
 mkdir -p "$dir"
 
 case $(date +%N) in
 *[!0-9]*)
-    echo "bench.sh: date does not know nanoseconds here" >&2
+    echo "formats.sh: date does not know nanoseconds here" >&2
     exit 1
     ;;
 esac
