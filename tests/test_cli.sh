@@ -9,48 +9,11 @@
 BUILD=${BUILD:-build}
 . "$(dirname "$0")/lib.sh"
 brume=$BUILD/brume bake=$BUILD/brume-bake cloud=$BUILD/brume-cloud
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-trap 'exit 1' HUP INT TERM
-none=$work/none out=$work/out err=$work/err
+. "$(dirname "$0")/cli_lib.sh"
 volume=$work/cloud.brume
 small="--set size=80x60 --set light_samples=8"
 
 ## Tools
-
-# Files whose contents differ from what was said are shown behind a #.
-show()
-{
-    echo "# status $status; left in the folder: $(ls -A "$none")"
-    sed 's/^/# out: /' "$out" | head -n 5
-    sed 's/^/# err: /' "$err" | head -n 5
-}
-
-# runs COMMAND...: succeeds, and says nothing on stderr
-runs()
-{
-    "$@" >"$out" 2>"$err"
-    status=$?
-    [ $status -eq 0 ] && [ ! -s "$err" ] && return
-    show
-    return 1
-}
-
-# fails STATUS PATTERN COMMAND...: that status, one line on stderr that holds
-# the pattern, nothing on stdout, no file in $none
-fails()
-{
-    want=$1 pattern=$2
-    shift 2
-    rm -rf "$none" && mkdir "$none"
-    "$@" >"$out" 2>"$err"
-    status=$?
-    [ $status -eq "$want" ] && [ "$(wc -l <"$err")" -eq 1 ] &&
-        grep -q -e "$pattern" "$err" && [ ! -s "$out" ] &&
-        [ -z "$(ls -A "$none")" ] && return
-    show
-    return 1
-}
 
 # renders OUT ARGUMENT...: a small picture in a moment
 renders()

@@ -171,8 +171,7 @@ static void check_refusals(const struct test_volumes *volumes)
         enum wide_kernel k = i < 0 ? WIDE_SCALAR : kernels[i];
         bool good =
             wide_march_rect(k, NULL, 0, 0, 1, 1, out, 1) == BRUME_ERR_NULL &&
-            wide_march_rect(k, &frame, 0, 0, 1, 1, NULL, 1) ==
-                BRUME_ERR_NULL &&
+            wide_march_rect(k, &frame, 0, 0, 1, 1, NULL, 1) == BRUME_ERR_NULL &&
             wide_march_rect(k, &frame, w, 0, 1, 1, out, 1) == BRUME_ERR_RECT &&
             wide_march_rect(k, &frame, 0, h, 1, 1, out, 1) == BRUME_ERR_RECT &&
             wide_march_rect(k, &frame, 0, h - 1, 1, 2, out, 1) ==
@@ -245,8 +244,7 @@ static void random_light(struct brume_scene *s)
 {
     s->light = (uint8_t)random_below(3);
     s->light_step = random_octave(BRUME_MIN_STEP, BRUME_MAX_STEP);
-    s->light_samples =
-        (uint16_t)random_below(s->light == BRUME_LOG ? 17 : 80);
+    s->light_samples = (uint16_t)random_below(s->light == BRUME_LOG ? 17 : 80);
     if (s->light == BRUME_NO_LIGHT)
         s->light_samples = 0;
     s->light_density_scale = random_octave(1, 1u << 31);
