@@ -179,6 +179,14 @@ BRUME_INLINE uint32_t brume_depth_code(uint32_t distance)
     return high << 11 | (mantissa & 0x7ffu);
 }
 
+#if BRUME_WITH_DEPTH
+/* The code of a mean distance: t + step * moment / lost, t in Q16.16, moment
+ * in units of 2^20 times those of lost. From 2^16 - 2^5 voxels on the largest
+ * code stands for all; BRUME_NO_DEPTH when nothing was lost. */
+uint32_t brume_mean_depth(const struct brume_frame *frame, uint32_t t,
+                          uint32_t moment, uint32_t lost);
+#endif
+
 /* Chooses the kernel and fills the tables of density and light. */
 int brume_march_begin(struct brume_frame *frame,
                       const struct brume_scene *scene);

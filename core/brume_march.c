@@ -203,17 +203,15 @@ BRUME_INLINE uint32_t moment(uint32_t lost, uint32_t index)
     return mul_hi_floor(lost, index << 12);
 }
 
-/* The code of a mean distance: t + step * moment / lost. Below 2^17 voxels;
- * from 2^16 - 2^3 on the largest code stands for all. */
-static uint32_t depth_of(const struct brume_frame *f, uint32_t t,
-                         uint32_t moment, uint32_t lost)
+uint32_t brume_mean_depth(const struct brume_frame *frame, uint32_t t,
+                          uint32_t moment, uint32_t lost)
 {
     if (lost == 0)
         return BRUME_NO_DEPTH;
     struct brume_number way =
         brume_number_mul(brume_number_of(moment, 20),
                          brume_number_inverse(brume_number_of(lost, 0)));
-    way = brume_number_mul(way, brume_number_of(f->step, 0));
+    way = brume_number_mul(way, brume_number_of(frame->step, 0));
     const uint32_t cap = 0xffdfffffu; /* of code 65534 */
     uint32_t further = brume_number_floor(way, 0);
     return brume_depth_code(t < cap && further < cap - t ? t + further : cap);
@@ -272,7 +270,8 @@ BRUME_INLINE void march(const struct brume_frame *f,
     finish(f, light, transmittance, out);
 #if BRUME_WITH_DEPTH
     if (f->depth)
-        out->depth = depth_of(f, ray->t, where, (1u << 31) - transmittance);
+        out->depth =
+            brume_mean_depth(f, ray->t, where, (1u << 31) - transmittance);
 #endif
 }
 

@@ -87,7 +87,8 @@ static size_t first_in_pages(const struct brume_volume *v,
 {
     size_t row = (v->cell_count[0] + 1u) / 2u;
     size_t plane = row * ((v->cell_count[1] + 1u) / 2u);
-    size_t page = (cell[2] >> 1) * plane + (cell[1] >> 1) * row + (cell[0] >> 1);
+    size_t page =
+        (cell[2] >> 1) * plane + (cell[1] >> 1) * row + (cell[0] >> 1);
     return page << 12 | (cell[2] & 1u) << 11 | (cell[1] & 1u) << 7 |
            (cell[0] & 1u) << 3;
 }
@@ -161,17 +162,17 @@ static void copy_octets_inside(struct wide_copy *c, const uint32_t cell[3],
 {
     const struct brume_volume *v = c->volume;
     uint32_t side = v->side, row = v->cell_count[0];
-    size_t number = ((size_t)cell[2] * v->cell_count[1] + cell[1]) * row +
-                    cell[0];
+    size_t number =
+        ((size_t)cell[2] * v->cell_count[1] + cell[1]) * row + cell[0];
     uint64_t *page = (uint64_t *)to + (number << 9);
     for (uint32_t z = 0; z < side - 1u; z++)
         for (uint32_t y = 0; y < side - 1u; y++)
             for (uint32_t x = 0; x < side - 1u; x++) {
                 uint64_t octet = 0;
                 for (uint32_t n = 0; n < 8; n++) {
-                    uint32_t i = x + (n & 1u) +
-                                 side * (y + (n >> 1 & 1u) +
-                                         side * (z + (n >> 2)));
+                    uint32_t i =
+                        x + (n & 1u) +
+                        side * (y + (n >> 1 & 1u) + side * (z + (n >> 2)));
                     octet |= (uint64_t)code_of(v, brick, i) << 8 * n;
                 }
                 page[z << 6 | y << 3 | x] = octet;
@@ -190,8 +191,8 @@ static void add_voxel(struct wide_copy *c, uint64_t *to, uint32_t x, uint32_t y,
         size_t number = ((size_t)(d >> 3) * v->cell_count[1] + (b >> 3)) *
                             v->cell_count[0] +
                         (a >> 3);
-        to[number << 9 | (d & 7u) << 6 | (b & 7u) << 3 | (a & 7u)] |=
-            code << 8 * n;
+        to[number << 9 | (d & 7u) << 6 | (b & 7u) << 3 | (a & 7u)] |= code
+                                                                      << 8 * n;
     }
 }
 

@@ -237,8 +237,8 @@ LANES_INLINE lanes lanes_leading_zeros(lanes a)
 #elif defined(__AVX2__)
     /* The exponent of the word as a float; bits that could round it up to the
      * next power are cleared. A negative word's is never less than 31. */
-    __m256i cleared = _mm256_andnot_si256(_mm256_srli_epi32((__m256i)a, 1),
-                                          (__m256i)a);
+    __m256i cleared =
+        _mm256_andnot_si256(_mm256_srli_epi32((__m256i)a, 1), (__m256i)a);
     lanes e = (lanes)_mm256_cvtepi32_ps(cleared) << 1 >> 24;
     e = 158u - lanes_max(e, lanes_of(126));
     return lanes_select(mask_high(a), lanes_of(0), e);
@@ -254,8 +254,8 @@ LANES_INLINE lanes lanes_leading_zeros(lanes a)
 LANES_INLINE __m256d doubles_of(__m128i a)
 {
     const __m256d magic = _mm256_set1_pd(0x1p52);
-    __m256i bits = _mm256_or_si256(_mm256_cvtepu32_epi64(a),
-                                   _mm256_castpd_si256(magic));
+    __m256i bits =
+        _mm256_or_si256(_mm256_cvtepu32_epi64(a), _mm256_castpd_si256(magic));
     return _mm256_sub_pd(_mm256_castsi256_pd(bits), magic);
 }
 
@@ -272,9 +272,9 @@ LANES_INLINE __m256i quotient_of_four(__m128i a, __m128i b)
 LANES_INLINE lanes lanes_quotient(lanes a, lanes b)
 {
 #if defined(__AVX512F__)
-    __m512d low = _mm512_div_pd(
-        _mm512_cvtepu32_pd(_mm512_castsi512_si256((__m512i)a)),
-        _mm512_cvtepu32_pd(_mm512_castsi512_si256((__m512i)b)));
+    __m512d low =
+        _mm512_div_pd(_mm512_cvtepu32_pd(_mm512_castsi512_si256((__m512i)a)),
+                      _mm512_cvtepu32_pd(_mm512_castsi512_si256((__m512i)b)));
     __m512d high = _mm512_div_pd(
         _mm512_cvtepu32_pd(_mm512_extracti64x4_epi64((__m512i)a, 1)),
         _mm512_cvtepu32_pd(_mm512_extracti64x4_epi64((__m512i)b, 1)));
@@ -330,7 +330,7 @@ LANES_INLINE lanes_float lanes_to_float(lanes a)
 /* Of numbers from 0 to 2^31, truncated. */
 LANES_INLINE lanes lanes_from_float(lanes_float a)
 {
-    return (lanes)__builtin_convertvector(a, lanes_signed);
+    return (lanes) __builtin_convertvector(a, lanes_signed);
 }
 
 /* High words of the products, as mul_hi_floor of the core. */
@@ -359,265 +359,5 @@ LANES_INLINE lanes lanes_shift_right(lanes a, lanes by)
 {
     return a >> by;
 }
-
-/// Memory ///
-
-/*
- * One load for each lane, put together by insertions: on the Zen 4 this was
- * measured on it takes 0.6 cycles a lane while data is in the L1 cache, where
- * the gather instructions take 1.28 (both widths, masked lanes included). It
- * also reads exactly the bytes it needs, so nothing is ever read beyond a
- * table's end or the asset's. Lanes that are not wanted need a valid index.
- */
-#if defined(__AVX2__)
-
-#define LANES_QUADS (WIDE_LANES / 4)
-
-LANES_INLINE lanes lanes_join(const __m128i quad[LANES_QUADS])
-{
-    __m256i low = _mm256_inserti128_si256(_mm256_castsi128_si256(quad[0]),
-                                          quad[1], 1);
-#if WIDE_LANES == 16
-    __m256i high = _mm256_inserti128_si256(_mm256_castsi128_si256(quad[2]),
-                                           quad[3], 1);
-    return (lanes)_mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
-#else
-    return (lanes)low;
-#endif
-}
-
-#endif
-
-/* Stores v where the compiler must load it again, word by word: it would
- * rather take words out of the vector, which costs twice as much. */
-LANES_INLINE void lanes_spill(uint32_t to[WIDE_LANES], lanes v)
-{
-    lanes_store(to, v);
-    __asm__("" : "+m"(*(uint32_t(*)[WIDE_LANES])to));
-}
-
-/* base[at] */
-LANES_INLINE lanes gather_words_at(const void *base, const uint32_t *i)
-{
-    const uint32_t *p = base;
-#if defined(__AVX2__)
-    __m128i quad[LANES_QUADS];
-    for (int n = 0; n < LANES_QUADS; n++) {
-        __m128i v = _mm_loadu_si32(p + i[4 * n]);
-        v = _mm_insert_epi32(v, (int)p[i[4 * n + 1]], 1);
-        v = _mm_insert_epi32(v, (int)p[i[4 * n + 2]], 2);
-        quad[n] = _mm_insert_epi32(v, (int)p[i[4 * n + 3]], 3);
-    }
-    return lanes_join(quad);
-#else
-    lanes v;
-    for (unsigned n = 0; n < WIDE_LANES; n++)
-        v[n] = p[i[n]];
-    return v;
-#endif
-}
-
-LANES_INLINE lanes gather_words(const void *base, lanes at)
-{
-    uint32_t i[WIDE_LANES] __attribute__((aligned(64)));
-    lanes_spill(i, at);
-    return gather_words_at(base, i);
-}
-
-/* base[at] */
-LANES_INLINE lanes gather_bytes_at(const uint8_t *base, const uint32_t *i)
-{
-#if defined(__AVX2__)
-    __m128i quad[LANES_QUADS];
-    for (int n = 0; n < LANES_QUADS; n++) {
-        __m128i v = _mm_cvtsi32_si128(base[i[4 * n]]);
-        v = _mm_insert_epi8(v, base[i[4 * n + 1]], 4);
-        v = _mm_insert_epi8(v, base[i[4 * n + 2]], 8);
-        quad[n] = _mm_insert_epi8(v, base[i[4 * n + 3]], 12);
-    }
-    return lanes_join(quad);
-#else
-    lanes v;
-    for (unsigned n = 0; n < WIDE_LANES; n++)
-        v[n] = base[i[n]];
-    return v;
-#endif
-}
-
-LANES_INLINE lanes gather_bytes(const uint8_t *base, lanes at)
-{
-    uint32_t i[WIDE_LANES] __attribute__((aligned(64)));
-    lanes_spill(i, at);
-    return gather_bytes_at(base, i);
-}
-
-/* base[at] */
-LANES_INLINE lanes gather_halves_at(const void *base, const uint32_t *i)
-{
-    const uint16_t *p = base;
-#if defined(__AVX2__)
-    __m128i quad[LANES_QUADS];
-    for (int n = 0; n < LANES_QUADS; n++) {
-        __m128i v = _mm_cvtsi32_si128(p[i[4 * n]]);
-        v = _mm_insert_epi16(v, p[i[4 * n + 1]], 2);
-        v = _mm_insert_epi16(v, p[i[4 * n + 2]], 4);
-        quad[n] = _mm_insert_epi16(v, p[i[4 * n + 3]], 6);
-    }
-    return lanes_join(quad);
-#else
-    lanes v;
-    for (unsigned n = 0; n < WIDE_LANES; n++)
-        v[n] = p[i[n]];
-    return v;
-#endif
-}
-
-LANES_INLINE lanes gather_halves(const void *base, lanes at)
-{
-    uint32_t i[WIDE_LANES] __attribute__((aligned(64)));
-    lanes_spill(i, at);
-    return gather_halves_at(base, i);
-}
-
-/// Octets ///
-
-/*
- * Eight bytes each, of the corners of a cube: x is bit 0 of a byte's number, y
- * bit 1, z bit 2. mean_of_octets is their mean by weights wx, wy, wz / 256 in
- * bytes 0, 1, 2 of w: the exact sum of the eight products, of whose 24
- * fraction bits the low 16 are rounded off.
- *
- * In vectors, bytes less 128 are mixed along x by 8-bit products in pairs,
- *     a (255 - w) + b w + a,  which fits 16 bits,
- * then along y by 16-bit products in pairs, then along z. What 128 was taken
- * from comes out as 2^31, exactly, for the weights' sum is 2^24.
- */
-#if defined(__AVX512F__)
-typedef __m512i octets_t;
-#define OCTETS(name) _mm512_##name
-#define OCTETS_LOGIC(name) _mm512_##name##_si512
-#define OCTETS_SPREAD(x) _mm512_broadcast_i32x4(x)
-#elif defined(__AVX2__)
-typedef __m256i octets_t;
-#define OCTETS(name) _mm256_##name
-#define OCTETS_LOGIC(name) _mm256_##name##_si256
-#define OCTETS_SPREAD(x) _mm256_broadcastsi128_si256(x)
-#endif
-
-#if defined(__AVX2__)
-
-/* Sums of products less 2^31, in the low words. w: weights, 64 bits each. */
-LANES_INLINE octets_t mix_octets(octets_t v, octets_t w)
-{
-    const octets_t xs = OCTETS_SPREAD(
-        _mm_set_epi8(8, 8, 8, 8, 8, 8, 8, 8, 0, 0, 0, 0, 0, 0, 0, 0));
-    const octets_t ys = OCTETS_SPREAD(_mm_set_epi8(
-        -1, 9, -1, 9, -1, 9, -1, 9, -1, 1, -1, 1, -1, 1, -1, 1));
-    octets_t wx = OCTETS_LOGIC(xor)(OCTETS(shuffle_epi8)(w, xs),
-                                    OCTETS(set1_epi16)(0xff));
-    octets_t wy = OCTETS_LOGIC(xor)(OCTETS(shuffle_epi8)(w, ys),
-                                    OCTETS(set1_epi32)(0xffff));
-    wy = OCTETS(add_epi16)(wy, OCTETS(set1_epi32)(0x101));
-    v = OCTETS_LOGIC(xor)(v, OCTETS(set1_epi8)(-128));
-    octets_t a = OCTETS(srai_epi16)(OCTETS(slli_epi16)(v, 8), 8);
-    octets_t x = OCTETS(add_epi16)(OCTETS(maddubs_epi16)(wx, v), a);
-    octets_t y = OCTETS(madd_epi16)(x, wy);
-    octets_t rise = OCTETS(sub_epi32)(OCTETS(srli_epi64)(y, 32), y);
-    octets_t z = OCTETS(mul_epu32)(rise, OCTETS(srli_epi64)(w, 16));
-    return OCTETS(add_epi32)(OCTETS(slli_epi32)(y, 8), z);
-}
-
-LANES_INLINE __m128i load_octets(const uint64_t *p, uint32_t low, uint32_t high)
-{
-    return _mm_castps_si128(_mm_loadh_pi(
-        _mm_castsi128_ps(_mm_loadl_epi64((const __m128i *)(p + low))),
-        (const __m64 *)(p + high)));
-}
-
-#endif
-
-LANES_INLINE lanes mean_of_octets(const uint64_t *p, const uint32_t *i, lanes w)
-{
-#if defined(__AVX512F__)
-    octets_t half[2];
-    for (int n = 0; n < 2; n++, i += 8) {
-        __m256i low = _mm256_inserti128_si256(
-            _mm256_castsi128_si256(load_octets(p, i[0], i[1])),
-            load_octets(p, i[2], i[3]), 1);
-        __m256i high = _mm256_inserti128_si256(
-            _mm256_castsi128_si256(load_octets(p, i[4], i[5])),
-            load_octets(p, i[6], i[7]), 1);
-        octets_t v =
-            _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
-        __m256i ws = n ? _mm512_extracti64x4_epi64((__m512i)w, 1)
-                       : _mm512_castsi512_si256((__m512i)w);
-        half[n] = mix_octets(v, _mm512_cvtepu32_epi64(ws));
-    }
-    const __m512i low_words =
-        _mm512_set_epi32(30, 28, 26, 24, 22, 20, 18, 16, 14, 12, 10, 8, 6, 4,
-                         2, 0);
-    lanes sum = (lanes)_mm512_permutex2var_epi32(half[0], low_words, half[1]);
-    return (sum + 0x80008000u) >> 16;
-#elif defined(__AVX2__)
-    __m256 half[2];
-    for (int n = 0; n < 2; n++, i += 4) {
-        octets_t v = _mm256_inserti128_si256(
-            _mm256_castsi128_si256(load_octets(p, i[0], i[1])),
-            load_octets(p, i[2], i[3]), 1);
-        __m128i ws = n ? _mm256_extracti128_si256((__m256i)w, 1)
-                       : _mm256_castsi256_si128((__m256i)w);
-        half[n] =
-            _mm256_castsi256_ps(mix_octets(v, _mm256_cvtepu32_epi64(ws)));
-    }
-    __m256i both =
-        _mm256_castps_si256(_mm256_shuffle_ps(half[0], half[1], 0x88));
-    lanes sum = (lanes)_mm256_permute4x64_epi64(both, 0xd8);
-    return (sum + 0x80008000u) >> 16;
-#else
-    for (unsigned n = 0; n < WIDE_LANES; n++) {
-        uint32_t sum = 0x8000u;
-        for (uint32_t b = 0; b < 8; b++) {
-            uint32_t product = p[i[n]] >> 8 * b & 255u;
-            for (uint32_t axis = 0; axis < 3; axis++) {
-                uint32_t u = w[n] >> 8 * axis & 255u;
-                product *= b >> axis & 1u ? u : 256u - u;
-            }
-            sum += product;
-        }
-        w[n] = sum >> 16;
-    }
-    return w;
-#endif
-}
-
-/// Packing ///
-
-/* Stores the lanes of m, close together, to `to`, which has room for all. */
-#if defined(__AVX512F__)
-LANES_INLINE void lanes_pack(uint32_t *to, lanes v, lanes_mask m)
-{
-    lanes_store(to, (lanes)_mm512_maskz_compress_epi32(m, (__m512i)v));
-}
-#elif defined(__AVX2__)
-LANES_INLINE __m256i pack_order(unsigned bits)
-{
-    /* Numbers of the set bits, 3 bits each, from lane 0 on. */
-    uint64_t spread = _pdep_u64(bits, 0x0101010101010101u) * 255u;
-    uint64_t order = _pext_u64(0x0706050403020100u, spread);
-    return _mm256_cvtepu8_epi32(_mm_cvtsi64_si128((int64_t)order));
-}
-LANES_INLINE void lanes_pack(uint32_t *to, lanes v, lanes_mask m)
-{
-    __m256i order = pack_order(mask_bits(m));
-    lanes_store(to, (lanes)_mm256_permutevar8x32_epi32((__m256i)v, order));
-}
-#else
-LANES_INLINE void lanes_pack(uint32_t *to, lanes v, lanes_mask m)
-{
-    for (unsigned i = 0; i < WIDE_LANES; i++)
-        if (m[i])
-            *to++ = v[i];
-}
-#endif
 
 #endif

@@ -10,7 +10,7 @@
 
 #include "brume_lookup.h"
 #include "wide.h"
-#include "wide_lanes.h"
+#include "wide_gather.h"
 
 /* A byte of every asset that is zero: the header's, at 26. */
 #define ZERO_BYTE 26u
@@ -25,7 +25,7 @@ struct lookups {
     uint32_t voxel[LOOKUPS][WIDE_LANES]; /* in its brick; or UNWANTED */
     uint32_t cell[LOOKUPS][WIDE_LANES];  /* its word, UNWANTED or'ed in */
     uint32_t d[LOOKUPS][WIDE_LANES];     /* 0 where there is none */
-    uint32_t x[LOOKUPS][WIDE_LANES]; /* for trilinear */
+    uint32_t x[LOOKUPS][WIDE_LANES];     /* for trilinear */
     uint32_t y[LOOKUPS][WIDE_LANES];
     uint32_t z[LOOKUPS][WIDE_LANES];
     uint32_t weight[LOOKUPS][WIDE_LANES]; /* bytes, for octets */
@@ -94,8 +94,7 @@ LANES_INLINE void want_cell(struct lookups *l, uint32_t g,
                             lanes z, lanes_mask wanted, struct kernel k)
 {
     lanes voxel = voxel_number(x, y, z, k);
-    lanes_store(l->at[g],
-                lanes_where(wanted, cell_number(f->volume, x, y, z)));
+    lanes_store(l->at[g], lanes_where(wanted, cell_number(f->volume, x, y, z)));
     lanes_store(l->voxel[g], lanes_select(wanted, voxel, lanes_of(UNWANTED)));
     if (k.trilinear) {
         lanes_store(l->x[g], x);
@@ -136,12 +135,13 @@ LANES_INLINE void look_up_nearest(struct lookups *l, uint32_t n,
             lanes_store(l->d[g], code);
             continue;
         }
-        lanes_mask none = mask_high(cell);
+        /* Without a brick there may be no ranges, not even the first. */
+        lanes_mask brick = mask_less(cell, lanes_of(BRUME_CELL_EMPTY));
         lanes range = lanes_of(0);
-        if (k.format != BRUME_U8)
-            range = gather_words(v->ranges, lanes_unless(none, cell));
+        if (k.format != BRUME_U8 && mask_any(brick))
+            range = gather_words(v->ranges, lanes_where(brick, cell));
         lanes d = clamp_density(f, density_of(range, code, 0, k), k);
-        lanes_store(l->d[g], lanes_unless(none, d));
+        lanes_store(l->d[g], lanes_where(brick, d));
     }
 }
 
@@ -156,8 +156,8 @@ LANES_INLINE lanes mix_lanes(lanes a, lanes b, lanes w)
 LANES_INLINE lanes codes_at(const struct brume_volume *v, lanes brick, lanes i,
                             lanes_mask wanted, struct kernel k)
 {
-    lanes at = lanes_select(wanted, byte_of(v, brick, i, k),
-                            lanes_of(ZERO_BYTE));
+    lanes at =
+        lanes_select(wanted, byte_of(v, brick, i, k), lanes_of(ZERO_BYTE));
     return code_of(gather_bytes(v->asset, at), i, k);
 }
 
@@ -222,9 +222,9 @@ static inline lanes mix_anywhere(const struct brume_frame *f, lanes x, lanes y,
 LANES_INLINE lanes_mask on_high_faces(lanes x, lanes y, lanes z)
 {
     lanes last = lanes_of(7u << 16);
-    return mask_or(mask_equal(x & last, last),
-                   mask_or(mask_equal(y & last, last),
-                           mask_equal(z & last, last)));
+    return mask_or(
+        mask_equal(x & last, last),
+        mask_or(mask_equal(y & last, last), mask_equal(z & last, last)));
 }
 
 LANES_INLINE void look_up_trilinear(struct lookups *l, uint32_t n,
@@ -241,15 +241,14 @@ LANES_INLINE void look_up_trilinear(struct lookups *l, uint32_t n,
             lanes_mask wanted =
                 mask_less(lanes_load(l->voxel[g]), lanes_of(UNWANTED));
             lanes_mask face = mask_and(wanted, on_high_faces(x, y, z));
-            lanes_mask near =
-                mask_and(face, mask_less(cell, lanes_of(BRUME_CELL_EMPTY + 2u)));
+            lanes_mask near = mask_and(
+                face, mask_less(cell, lanes_of(BRUME_CELL_EMPTY + 2u)));
             lanes_mask rest = k.clamp ? mask_or(brick, near) : near;
             brick = mask_less_those(brick, rest);
             if (mask_any(rest)) {
                 d = lanes_where(rest, mix_anywhere(f, x, y, z, rest, k));
                 /* Leaps count from a cell without density. */
-                lanes_store(l->cell[g],
-                            lanes_select(rest, lanes_of(0), cell));
+                lanes_store(l->cell[g], lanes_select(rest, lanes_of(0), cell));
             }
         }
         if (mask_any(brick))
@@ -260,107 +259,124 @@ LANES_INLINE void look_up_trilinear(struct lookups *l, uint32_t n,
 
 /// Copies ///
 
-/* Voxels in pages of 16^3, page by page. */
-struct pages {
-    uint32_t row, plane, end; /* voxels from page to page; of all */
+/* What a lookup by copies reads, taken out of the loops: stores to lookups
+ * might change it for all that the compiler knows. */
+struct copied {
+    const uint8_t *bytes;
+    const uint16_t *halves;
+    const uint64_t *octets;
+    const uint32_t *ranges;
+    lanes row, plane, end; /* elements from page to page; of the zero one */
+    lanes max_density;
+    /* The same of the halves, where octets come first. */
+    lanes half_row, half_plane, half_end;
 };
 
-LANES_INLINE struct pages pages_of(const struct wide_copy *c, size_t end)
-{
-    const uint16_t *n = c->volume->cell_count;
-    uint32_t row = (n[0] + 1u) / 2u;
-    struct pages p = {row << 12, (row * ((n[1] + 1u) / 2u)) << 12,
-                      (uint32_t)end};
-    return p;
-}
-
-LANES_INLINE lanes x_in_pages(lanes x)
-{
-    return (x >> 16 & 15u) | (x >> 8 & 0xfffff000u);
-}
-
-LANES_INLINE lanes y_in_pages(lanes y, struct pages p)
-{
-    return (y >> 12 & 240u) + (y >> 20) * p.row;
-}
-
-LANES_INLINE lanes z_in_pages(lanes z, struct pages p)
-{
-    return (z >> 8 & 3840u) + (z >> 20) * p.plane;
-}
-
-/* Octets in pages of 8^3, cell by cell. */
-LANES_INLINE lanes octet_number(const struct wide_copy *c, lanes x, lanes y,
-                                lanes z)
-{
-    uint32_t row = c->volume->cell_count[0];
-    uint32_t plane = row * c->volume->cell_count[1];
-    lanes cell = (z >> 19) * (plane << 9) + (y >> 19) * (row << 9);
-    lanes voxel = (x >> 16 & 7u) | (y >> 13 & 56u) | (z >> 10 & 448u);
-    return cell + ((x >> 10 & 0xfffffe00u) | voxel);
-}
-
-/* Which copy a kernel's lookups begin with. */
+/* Does a kernel's lookup begin with octets? */
 LANES_INLINE bool reads_octets(struct kernel k)
 {
     return k.trilinear && !k.clamp;
 }
 
-LANES_INLINE void want_copied(struct lookups *l, uint32_t g,
-                              const struct wide_copy *c, lanes x, lanes y,
-                              lanes z, lanes_mask wanted, struct kernel k)
+LANES_INLINE struct copied copied_of(const struct brume_frame *f,
+                                     const struct wide_copy *c, struct kernel k)
 {
-    struct pages p =
-        pages_of(c, k.trilinear || k.format != BRUME_U8 ? c->halves_size
-                                                        : c->bytes_size);
-    if (reads_octets(k)) {
-        lanes end = lanes_of((uint32_t)c->octets_size);
-        lanes at = octet_number(c, x, y, z);
-        lanes_store(l->at[g], lanes_select(wanted, at, end));
-    } else if (!k.trilinear) {
-        lanes at = x_in_pages(x) + y_in_pages(y, p) + z_in_pages(z, p);
-        lanes_store(l->at[g], lanes_select(wanted, at, lanes_of(p.end)));
+    struct copied r;
+    const uint16_t *n = f->volume->cell_count;
+    uint32_t row = (n[0] + 1u) / 2u, plane = row * ((n[1] + 1u) / 2u);
+    bool bytes = !k.trilinear && k.format == BRUME_U8;
+    r.bytes = c->bytes;
+    r.halves = c->halves;
+    r.octets = c->octets;
+    r.ranges = c->ranges;
+    r.max_density = lanes_of(f->max_density);
+    r.half_row = lanes_of(row << 12);
+    r.half_plane = lanes_of(plane << 12);
+    r.half_end = lanes_of((uint32_t)(bytes ? c->bytes_size : c->halves_size));
+    if (!reads_octets(k)) {
+        r.row = r.half_row;
+        r.plane = r.half_plane;
+        r.end = r.half_end;
+        return r;
     }
-    if (!k.trilinear)
-        return;
-    lanes_store(l->weight[g],
-                (x >> 8 & 255u) | (y & 0xff00u) | (z << 8 & 0xff0000u));
-    if (k.clamp || k.side == 8) {
+    r.row = lanes_of((uint32_t)n[0] << 9);
+    r.plane = lanes_of(((uint32_t)n[0] * n[1]) << 9);
+    r.end = lanes_of((uint32_t)c->octets_size);
+    return r;
+}
+
+/* Voxels in pages of 16^3. */
+LANES_INLINE lanes x_in_pages(lanes x)
+{
+    return (x >> 16 & 15u) | (x >> 8 & 0xfffff000u);
+}
+
+LANES_INLINE lanes y_in_pages(lanes y, lanes row)
+{
+    return (y >> 12 & 240u) + (y >> 20) * row;
+}
+
+LANES_INLINE lanes z_in_pages(lanes z, lanes plane)
+{
+    return (z >> 8 & 3840u) + (z >> 20) * plane;
+}
+
+/* Octets in pages of 8^3, cell by cell. */
+LANES_INLINE lanes octet_number(lanes x, lanes y, lanes z,
+                                const struct copied *c)
+{
+    lanes cell = (z >> 19) * c->plane + (y >> 19) * c->row;
+    lanes voxel = (x >> 16 & 7u) | (y >> 13 & 56u) | (z >> 10 & 448u);
+    return cell + ((x >> 10 & 0xfffffe00u) | voxel);
+}
+
+LANES_INLINE void want_copied(struct lookups *l, uint32_t g,
+                              const struct copied *c, lanes x, lanes y, lanes z,
+                              lanes_mask wanted, struct kernel k)
+{
+    if (reads_octets(k)) {
+        lanes at = octet_number(x, y, z, c);
+        lanes_store(l->at[g], lanes_select(wanted, at, c->end));
+        lanes_store(l->weight[g],
+                    (x >> 8 & 255u) | (y & 0xff00u) | (z << 8 & 0xff0000u));
+    } else if (!k.trilinear) {
+        lanes at =
+            x_in_pages(x) + y_in_pages(y, c->row) + z_in_pages(z, c->plane);
+        lanes_store(l->at[g], lanes_select(wanted, at, c->end));
+    } else {
+        lanes_store(l->voxel[g],
+                    lanes_select(wanted, lanes_of(0), lanes_of(UNWANTED)));
+    }
+    if (k.trilinear && (k.clamp || k.side == 8)) {
         lanes_store(l->x[g], x);
         lanes_store(l->y[g], y);
         lanes_store(l->z[g], z);
     }
-    if (k.clamp)
-        lanes_store(l->voxel[g], lanes_select(wanted, lanes_of(0),
-                                              lanes_of(UNWANTED)));
 }
 
 /* Density of voxels of the halves. */
-LANES_INLINE lanes half_at(const struct brume_frame *f,
-                           const struct wide_copy *c, lanes at,
-                           lanes_mask wanted, struct kernel k)
+LANES_INLINE lanes half_at(const struct copied *c, lanes at, lanes_mask wanted,
+                           struct kernel k)
 {
-    lanes end = lanes_of((uint32_t)c->halves_size);
-    return clamp_density(
-        f, gather_halves(c->halves, lanes_select(wanted, at, end)), k);
+    lanes d = gather_halves(c->halves, lanes_select(wanted, at, c->half_end));
+    return k.clamp ? lanes_min(d, c->max_density) : d;
 }
 
 /* As trilinear_anywhere of the core. */
-LANES_INLINE lanes mix_halves(const struct brume_frame *f,
-                              const struct wide_copy *c, lanes x, lanes y,
-                              lanes z, lanes_mask wanted, struct kernel k)
+LANES_INLINE lanes mix_halves(const struct copied *c, lanes x, lanes y, lanes z,
+                              lanes_mask wanted, struct kernel k)
 {
-    struct pages p = pages_of(c, 0);
     lanes wx = x >> 8 & 255u, wy = y >> 8 & 255u, wz = z >> 8 & 255u;
     lanes one = lanes_of(0x10000u), plane[2];
     lanes x0 = x_in_pages(x), x1 = x_in_pages(x + one);
-    lanes y0 = y_in_pages(y, p), y1 = y_in_pages(y + one, p);
+    lanes y0 = y_in_pages(y, c->half_row),
+          y1 = y_in_pages(y + one, c->half_row);
     for (uint32_t n = 0; n < 2; n++, z += one) {
-        lanes low = z_in_pages(z, p) + y0, high = z_in_pages(z, p) + y1;
-        low = mix_lanes(half_at(f, c, low + x0, wanted, k),
-                        half_at(f, c, low + x1, wanted, k), wx);
-        high = mix_lanes(half_at(f, c, high + x0, wanted, k),
-                         half_at(f, c, high + x1, wanted, k), wx);
+        lanes low = z_in_pages(z, c->half_plane) + y0, high = low - y0 + y1;
+        low = mix_lanes(half_at(c, low + x0, wanted, k),
+                        half_at(c, low + x1, wanted, k), wx);
+        high = mix_lanes(half_at(c, high + x0, wanted, k),
+                         half_at(c, high + x1, wanted, k), wx);
         plane[n] = (mix_lanes(low, high, wy) + 128u) >> 8;
     }
     return (mix_lanes(plane[0], plane[1], wz) + 0x8000u) >> 16;
@@ -368,8 +384,7 @@ LANES_INLINE lanes mix_halves(const struct brume_frame *f,
 
 /* From octets; but where these need the ranges of several bricks, halves. */
 LANES_INLINE lanes trilinear_copied(const struct lookups *l, uint32_t g,
-                                    const struct brume_frame *f,
-                                    const struct wide_copy *c, struct kernel k)
+                                    const struct copied *c, struct kernel k)
 {
     lanes at = lanes_load(l->at[g]);
     lanes d = mean_of_octets(c->octets, l->at[g], lanes_load(l->weight[g]));
@@ -380,73 +395,87 @@ LANES_INLINE lanes trilinear_copied(const struct lookups *l, uint32_t g,
         return d;
     lanes x = lanes_load(l->x[g]), y = lanes_load(l->y[g]);
     lanes z = lanes_load(l->z[g]);
-    lanes_mask face = mask_and(on_high_faces(x, y, z),
-                               mask_less(at, lanes_of((uint32_t)c->octets_size)));
+    lanes_mask face = mask_and(on_high_faces(x, y, z), mask_less(at, c->end));
     return mask_any(face)
-               ? lanes_select(face, mix_halves(f, c, x, y, z, face, k), d)
+               ? lanes_select(face, mix_halves(c, x, y, z, face, k), d)
                : d;
 }
 
-LANES_INLINE void look_up_copied(struct lookups *l, uint32_t n,
-                                 const struct brume_frame *f,
-                                 const struct wide_copy *c, struct kernel k)
+/* Density of group g. */
+LANES_INLINE lanes density_copied(const struct lookups *l, uint32_t g,
+                                  const struct copied *c, struct kernel k)
 {
-    FORGET(l->at);
-    for (uint32_t g = 0; g < n; g++) {
-        lanes d;
-        if (reads_octets(k)) {
-            d = trilinear_copied(l, g, f, c, k);
-        } else if (k.trilinear) {
-            lanes_mask wanted = mask_less(lanes_load(l->voxel[g]), lanes_of(1));
-            d = mix_halves(f, c, lanes_load(l->x[g]), lanes_load(l->y[g]),
-                           lanes_load(l->z[g]), wanted, k);
-            d = lanes_where(wanted, d);
-        } else if (k.format == BRUME_U8) {
-            d = gather_bytes_at(c->bytes, l->at[g]);
-            if (k.clamp)
-                d = clamp_density(f, d << 8, k);
-        } else {
-            d = clamp_density(f, gather_halves_at(c->halves, l->at[g]), k);
-        }
-        lanes_store(l->d[g], d);
+    lanes d;
+    if (reads_octets(k))
+        return trilinear_copied(l, g, c, k);
+    if (k.trilinear) {
+        lanes_mask wanted = mask_less(lanes_load(l->voxel[g]), lanes_of(1));
+        d = mix_halves(c, lanes_load(l->x[g]), lanes_load(l->y[g]),
+                       lanes_load(l->z[g]), wanted, k);
+        return lanes_where(wanted, d);
     }
+    if (k.format == BRUME_U8) {
+        d = gather_bytes_at(c->bytes, l->at[g]);
+        return k.clamp ? lanes_min(d << 8, c->max_density) : d;
+    }
+    d = gather_halves_at(c->halves, l->at[g]);
+    return lanes_min(d, c->max_density);
 }
 
 /// Both ///
 
-/* Wants the density at x, y, z, in group g; 0 where not wanted. */
-LANES_INLINE void want(struct lookups *l, uint32_t g,
-                       const struct brume_frame *f, const struct wide_copy *c,
+/* What lookups read: the asset, or its copies when there are such. */
+struct source {
+    const struct brume_frame *frame;
+    const struct wide_copy *copy;
+    struct copied copied;
+};
+
+LANES_INLINE struct source source_of(const struct brume_frame *f,
+                                     const struct wide_copy *c, struct kernel k)
+{
+    struct source s;
+    s.frame = f;
+    s.copy = c;
+    if (c != NULL)
+        s.copied = copied_of(f, c, k);
+    return s;
+}
+
+/* Wants the density at p in group g; 0 where not wanted. */
+LANES_INLINE void want(struct lookups *l, uint32_t g, const struct source *s,
                        const lanes p[3], lanes_mask wanted, struct kernel k)
 {
-    if (c != NULL)
-        want_copied(l, g, c, p[0], p[1], p[2], wanted, k);
+    if (s->copy != NULL)
+        want_copied(l, g, &s->copied, p[0], p[1], p[2], wanted, k);
     else
-        want_cell(l, g, f, p[0], p[1], p[2], wanted, k);
+        want_cell(l, g, s->frame, p[0], p[1], p[2], wanted, k);
 }
 
 /* Densities of the first n groups. */
-LANES_INLINE void look_up(struct lookups *l, uint32_t n,
-                          const struct brume_frame *f,
-                          const struct wide_copy *c, struct kernel k)
+LANES_INLINE void look_up(struct lookups *l, uint32_t n, const struct source *s,
+                          struct kernel k)
 {
-    if (c != NULL)
-        look_up_copied(l, n, f, c, k);
-    else if (k.trilinear)
-        look_up_trilinear(l, n, f, k);
-    else
-        look_up_nearest(l, n, f, k);
+    if (s->copy != NULL) {
+        FORGET(l->at);
+        for (uint32_t g = 0; g < n; g++)
+            lanes_store(l->d[g], density_copied(l, g, &s->copied, k));
+    } else if (k.trilinear) {
+        look_up_trilinear(l, n, s->frame, k);
+    } else {
+        look_up_nearest(l, n, s->frame, k);
+    }
 }
 
 /* After look_up: the words of group g's cells. The high bit is set where they
  * are empty and may be leapt over; copies know only of lanes with a density of
  * 0, the others have 0. */
 LANES_INLINE lanes cells_to_leap(const struct lookups *l, uint32_t g,
-                                 const struct brume_frame *f,
-                                 const struct wide_copy *c, const lanes p[3],
+                                 const struct source *s, const lanes p[3],
                                  lanes_mask wanted, struct kernel k)
 {
-    if (c == NULL)
+    const struct brume_frame *f = s->frame;
+    if (s->copy == NULL)
         return lanes_load(l->cell[g]);
     wanted = mask_and(wanted, mask_equal(lanes_load(l->d[g]), lanes_of(0)));
     if (!f->skip || !mask_any(wanted))

@@ -8,7 +8,7 @@
 #define BRUME_HOST_WIDE_RAYS_H
 
 #include "brume_lookup.h"
-#include "wide_lanes.h"
+#include "wide_gather.h"
 
 /* A ray whose entry into the pool is farther than this misses, Q16.16. */
 #define FAR_ENTRY 0xfde80000u
@@ -22,12 +22,6 @@ struct rays {
     lanes transmittance; /* Q1.31 */
     lanes moment;        /* see brume_march.c */
     lanes_mask alive;
-};
-
-/* Light rays, when they are jittered. */
-struct light_lanes {
-    lanes first[3];
-    lanes samples;
 };
 
 /// Noise ///
@@ -315,29 +309,27 @@ static inline void enter_lanes(struct rays *r, const struct brume_frame *f,
     lanes t = k * step + lanes_mul_hi(jitter << 16, step);
     for (int i = 0; i < 3; i++) {
         lanes m = magnitudes(unit[i]), low = m * t;
-        lanes way =
-            (lanes_mul_hi(m, t) << 2 | low >> 30) + (low >> 29 & 1u);
+        lanes way = (lanes_mul_hi(m, t) << 2 | low >> 30) + (low >> 29 & 1u);
         p[i] = with_signs(way, signs_of(unit[i])) + (uint32_t)f->eye[i];
         r->move[i] = mul_round_lanes(unit[i], step, 2);
     }
-    lanes_mask outside = mask_less_those(
-        r->alive, inside_lanes(f, p[0], p[1], p[2]));
+    lanes_mask outside =
+        mask_less_those(r->alive, inside_lanes(f, p[0], p[1], p[2]));
     if (mask_any(outside)) {
-        lanes tries = lanes_select(mask_less(t, t_out),
-                                   lanes_quotient(t_out - t, step),
-                                   lanes_of(0)) +
-                      2u;
+        lanes tries =
+            lanes_select(mask_less(t, t_out), lanes_quotient(t_out - t, step),
+                         lanes_of(0)) +
+            2u;
         while (mask_any(outside)) {
-            lanes_mask lost =
-                mask_and(outside, mask_equal(tries, lanes_of(0)));
+            lanes_mask lost = mask_and(outside, mask_equal(tries, lanes_of(0)));
             r->alive = mask_less_those(r->alive, lost);
             outside = mask_less_those(outside, lost);
             for (int i = 0; i < 3; i++)
                 p[i] += lanes_where(outside, r->move[i]);
             t += lanes_where(outside, step);
             tries -= 1u;
-            outside = mask_less_those(outside,
-                                      inside_lanes(f, p[0], p[1], p[2]));
+            outside =
+                mask_less_those(outside, inside_lanes(f, p[0], p[1], p[2]));
         }
     }
     r->t = t;
@@ -361,23 +353,27 @@ LANES_INLINE lanes counts_inside(const struct rays *r,
 
 /// Rays ///
 
-/* brume_light_begin */
-LANES_INLINE void begin_light_lanes(struct light_lanes *light,
-                                    const struct brume_frame *f, lanes jitter)
+/* brume_light_begin: to the first sample */
+LANES_INLINE void begin_light_lanes(lanes first[3], const struct brume_frame *f,
+                                    lanes jitter)
 {
-    lanes step = lanes_of(f->light_step), most = lanes_of(0);
-    lanes first = step + lanes_mul_hi(jitter << 16, step);
-    for (int i = 0; i < 3; i++) {
-        lanes sun = lanes_of((uint32_t)f->sun[i]);
-        light->first[i] = mul_round_lanes(sun, first, 2);
-        most |= magnitudes(light->first[i]);
-    }
-    light->samples =
-        lanes_min(lanes_of(f->light_samples), lanes_leading_zeros(most));
+    lanes step = lanes_of(f->light_step);
+    step += lanes_mul_hi(jitter << 16, step);
+    for (int i = 0; i < 3; i++)
+        first[i] = mul_round_lanes(lanes_of((uint32_t)f->sun[i]), step, 2);
+}
+
+/* and how many samples fit a word. */
+LANES_INLINE lanes light_samples_of(const lanes first[3],
+                                    const struct brume_frame *f)
+{
+    lanes most =
+        magnitudes(first[0]) | magnitudes(first[1]) | magnitudes(first[2]);
+    return lanes_min(lanes_of(f->light_samples), lanes_leading_zeros(most));
 }
 
 /* brume_ray_begin for the rays x, y of the lattice that are wanted. */
-static inline void begin_lanes(struct rays *r, struct light_lanes *light,
+static inline void begin_lanes(struct rays *r, lanes light_first[3],
                                const struct brume_frame *f, lanes x, lanes y,
                                lanes_mask wanted)
 {
@@ -397,7 +393,7 @@ static inline void begin_lanes(struct rays *r, struct light_lanes *light,
     enter_lanes(r, f, unit, jitter, t_in, t_out);
     r->left = counts_inside(r, f);
     if ((f->jitter & BRUME_JITTER_LIGHT) && f->light_kind != BRUME_UNIFORM)
-        begin_light_lanes(light, f, jitter_lanes(f, x, y, 1));
+        begin_light_lanes(light_first, f, jitter_lanes(f, x, y, 1));
 }
 
 #endif
