@@ -217,7 +217,8 @@ static void copy_scene(struct brume_frame *f, const struct brume_scene *s)
 }
 
 #if BRUME_WITH_TAA
-/* A word that changes with what rays see, but not with noise or camera. */
+/* A word that changes with what rays see, but not with noise or camera. Half
+ * of the table is enough, and all that a narrow kernel has. */
 static uint32_t sameness(const struct brume_frame *f)
 {
     const uint32_t part[] = {
@@ -237,7 +238,7 @@ static uint32_t sameness(const struct brume_frame *f)
         le32(*(const brume_word_t *)(const void *)(f->volume->asset +
                                                    BRUME_OFF_CRC))};
     uint32_t h = 0;
-    for (uint32_t i = 0; i < 512; i++)
+    for (uint32_t i = 0; i < 256; i++)
         h = h * 16777619u ^ f->table[i];
     for (uint32_t i = 0; i < sizeof part / sizeof *part; i++)
         h = (h ^ h >> 15) * 2246822519u ^ part[i];

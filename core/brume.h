@@ -545,8 +545,9 @@ unsigned brume_pixel_bytes(int pixel_format);
  * is pixel (x, y) and whose rows are `stride` bytes apart. dst must be aligned
  * for the format's word. Any cutting of a frame into rectangles gives the same
  * pixels. L8 and L16 take the background's red. Returns BRUME_OK (also for
- * empty rectangles), BRUME_ERR_NULL, BRUME_ERR_RECT, or BRUME_ERR_FEATURE for
- * a pixel format that was compiled out; then dst is untouched. */
+ * empty rectangles), BRUME_ERR_NULL, BRUME_ERR_RECT, BRUME_ERR_FEATURE for a
+ * pixel format that was compiled out, or BRUME_ERR_STATE for a scene that takes
+ * the passes of "Sequences"; then dst is untouched. */
 int brume_render_rect(const struct brume_frame *frame, unsigned x, unsigned y,
                       unsigned w, unsigned h, int pixel_format, void *dst,
                       size_t stride);

@@ -308,6 +308,7 @@ const char *brume_error_text(int error)
     case BRUME_ERR_SAMPLES: return "light_samples out of range";
     case BRUME_ERR_SCENE: return "scene field out of range";
     case BRUME_ERR_RECT: return "rectangle outside the frame";
+    case BRUME_ERR_STATE: return "no state, too small, or not begun";
     default: return "unknown error";
     }
 }

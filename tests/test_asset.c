@@ -177,8 +177,8 @@ static void test_null(const struct blob *b)
 static void test_error_texts(void)
 {
     bool good = true;
-    for (int e = BRUME_ERR_RECT; e <= BRUME_OK; e++)
-        for (int f = BRUME_ERR_RECT - 1; f < e; f++)
+    for (int e = BRUME_ERR_STATE; e <= BRUME_OK; e++)
+        for (int f = BRUME_ERR_STATE - 1; f < e; f++)
             good = good && brume_error_text(e) && brume_error_text(f) &&
                    strcmp(brume_error_text(e), brume_error_text(f)) != 0;
     good = good && brume_error_text(INT_MIN) && brume_error_text(INT_MAX);
