@@ -233,11 +233,11 @@ static void test_nrooks(void)
 /* The committed table is what the generator writes. */
 static void test_nrooks_table(void)
 {
-    FILE *is = fopen("tables/nrooks.c", "rb"), *should = tmpfile();
+    FILE *is = fopen("core/brume_nrooks.c", "rb"), *should = tmpfile();
     int a = 0, b = 0;
 
     if (!is || !should) {
-        tap_check(0, "tables/nrooks.c can be read");
+        tap_check(0, "core/brume_nrooks.c can be read");
         return;
     }
     noise_nrooks_write(should, "brume-noise nrooks");
@@ -246,7 +246,7 @@ static void test_nrooks_table(void)
         a = getc(is);
         b = getc(should);
     }
-    tap_check(a == b, "tables/nrooks.c is what its generator writes");
+    tap_check(a == b, "core/brume_nrooks.c is what its generator writes");
     fclose(is);
     fclose(should);
 }

@@ -208,7 +208,7 @@ static bool one_in(uint32_t n)
 /* -range .. range */
 static int32_t random_within(int32_t range)
 {
-    return (int32_t)random_below(2u * (uint32_t)range + 1u) - range;
+    return (int32_t)((int64_t)random_below(2u * (uint32_t)range + 1u) - range);
 }
 
 /* Octaves are as likely as one another. */

@@ -22,7 +22,7 @@ struct nrooks {
 /* The set of n = 1 .. NROOKS_MAX points. */
 void noise_nrooks(struct nrooks *set, uint32_t n);
 
-/* The committed table, tables/nrooks.c. Line 1 says that `command` made it.
+/* The committed table, core/brume_nrooks.c. Line 1 says that `command` made it.
  * Returns 0, or -1 when writing failed. */
 int noise_nrooks_write(FILE *out, const char *command);
 
