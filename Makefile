@@ -65,6 +65,7 @@ all: $(PROGRAMS) ## build the programs
 demo: deps ## make a cloud (or take VDB=file), bake it, draw pictures of it
 	@$(MAKE) --no-print-directory -j$(JOBS) all
 	@BUILD=$(BUILD) VDB="$(VDB)" sh platform/host/demo.sh
+include bench/bench.mk
 endif
 
 test: test-deps ## build and run every test of this machine
@@ -105,10 +106,6 @@ help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1|/p' Makefile platform/targets.mk \
 		bench/bench.mk | \
 		awk -F'|' '{ printf "%-21s %s\n", $$1, $$2 }'
-
-ifeq ($(CONF),host)
-include bench/bench.mk
-endif
 
 # Programs
 $(BUILD)/brume: $(HOST_OBJ) $(BUILD)/libbrume.a
