@@ -111,6 +111,13 @@ extern "C" {
 #define BRUME_WITH_RESOLUTION BRUME_WITH_SEQUENCES
 #endif
 
+#if !(BRUME_WITH_U8 || BRUME_WITH_U8R || BRUME_WITH_U4R)
+#error "brume: no format: set BRUME_WITH_U8, BRUME_WITH_U8R or BRUME_WITH_U4R"
+#endif
+#if !(BRUME_WITH_NEAREST || BRUME_WITH_TRILINEAR)
+#error "brume: no lookup: set BRUME_WITH_NEAREST or BRUME_WITH_TRILINEAR"
+#endif
+
 /* Rays have a mean depth when something uses it. */
 #define BRUME_WITH_DEPTH \
     (BRUME_WITH_TAA || BRUME_WITH_SPATIAL || BRUME_WITH_RESOLUTION)
