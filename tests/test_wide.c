@@ -407,7 +407,7 @@ static void check_names(void)
 int main(int argc, char **argv)
 {
     static struct test_volumes volumes;
-    if (test_volumes_make(&volumes, argc - 1, argv + 1) != 0)
+    if (test_volumes_make(&volumes, argc, argv) != 0)
         return 1;
     for (int i = 0; i < volumes.count; i++)
         wide_copy_init(&copies[i], &volumes.item[i].volume, WIDE_COPY_MOST);
