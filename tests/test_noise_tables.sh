@@ -12,10 +12,7 @@ BUILD=${BUILD:-build}
 CC=${CC:-cc}
 . "$(dirname "$0")/lib.sh"
 noise=$BUILD/brume-noise
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-trap 'exit 1' HUP INT TERM
-none=$work/none out=$work/out err=$work/err
+. "$(dirname "$0")/cli_lib.sh"
 
 ## Committed tables
 
@@ -278,28 +275,12 @@ check "swaps lower the loss of white noise" swaps_help
 
 ## As a user meets it
 
-# Files whose contents differ from what was said are shown behind a #.
-show()
-{
-    echo "# status $status; left in the folder: $(ls -A "$none")"
-    sed 's/^/# out: /' "$out" | head -n 5
-    sed 's/^/# err: /' "$err" | head -n 5
-}
-
-# fails STATUS PATTERN ARGUMENT...: that status, one line on stderr that holds
-# the pattern, nothing on stdout, no file in $none
-fails()
+# refuses STATUS PATTERN ARGUMENT...: of brume-noise
+refuses()
 {
     want=$1 pattern=$2
     shift 2
-    rm -rf "$none" && mkdir "$none"
-    "$noise" "$@" >"$out" 2>"$err"
-    status=$?
-    [ $status -eq "$want" ] && [ "$(wc -l <"$err")" -eq 1 ] &&
-        grep -q -e "$pattern" "$err" && [ ! -s "$out" ] &&
-        [ -z "$(ls -A "$none")" ] && return
-    show
-    return 1
+    fails "$want" "$pattern" "$noise" "$@"
 }
 
 # says PATTERN ARGUMENT...: on stdout, and nothing on stderr
@@ -325,63 +306,63 @@ to="-o $none/out.raw"
 check "--help" says '^usage: brume-noise' --help
 check "--help after a name" says '^usage: brume-noise' fast --help
 check "list" says '^stbn ' list
-check "no argument" fails 2 'no NAME' 
-check "a noise that is not" fails 2 "called 'pink'" pink $to
-check "nothing to do" fails 2 'nothing to do' fast
-check "an option that is not" fails 2 "'--sise'" fast --sise 8x8x1 $to
-check "an option without value" fails 2 'no value' fast $to --seed
-check "an argument too many" fails 2 "'more'" fast more $to
+check "no argument" refuses 2 'no NAME' 
+check "a noise that is not" refuses 2 "called 'pink'" pink $to
+check "nothing to do" refuses 2 'nothing to do' fast
+check "an option that is not" refuses 2 "'--sise'" fast --sise 8x8x1 $to
+check "an option without value" refuses 2 'no value' fast $to --seed
+check "an argument too many" refuses 2 "'more'" fast more $to
 for size in 8x8 7x8x1 8x8x3 4x4x1 512x8x1 8x8x128 8x8x1x1 8x8x0 -8x8x1; do
-    check "--size $size" fails 2 "size cannot be '$size'" fast --size $size $to
+    check "--size $size" refuses 2 "size cannot be '$size'" fast --size $size $to
 done
 for seed in -1 4294967296 1e3 ''; do
-    check "--seed '$seed'" fails 2 'seed cannot be' fast --seed "$seed" $to
+    check "--seed '$seed'" refuses 2 'seed cannot be' fast --seed "$seed" $to
 done
 for filter in box4 gauss gauss:0 gauss:17 gauss:1x gauss:.1234567 ema:0.1; do
-    check "--filter $filter" fails 2 'filter cannot be' fast --filter $filter \
+    check "--filter $filter" refuses 2 'filter cannot be' fast --filter $filter \
         $to
 done
 for time in box3 ema ema:0 ema:1.1 ema:0.1, ema:0.1,1 ema:0.1,0.1,0.1; do
-    check "--time $time" fails 2 'time cannot be' fast --time $time $to
+    check "--time $time" refuses 2 'time cannot be' fast --time $time $to
 done
 for combine in products separate hybrid: separate:x hybrid:1, hybrid:1,2,3; do
-    check "--combine $combine" fails 2 'combine cannot be' fast \
+    check "--combine $combine" refuses 2 'combine cannot be' fast \
         --combine $combine $to
 done
 for values in 3 32 0; do
-    check "--values $values" fails 2 'values cannot be' fast --values $values \
+    check "--values $values" refuses 2 'values cannot be' fast --values $values \
         $to
 done
-check "more values than slices" fails 2 '4 of 2' fast --size 8x8x2 \
+check "more values than slices" refuses 2 '4 of 2' fast --size 8x8x2 \
     --values 4 $to
-check "swaps of a file that is not" fails 1 'w.none' fast \
+check "swaps of a file that is not" refuses 1 'w.none' fast \
     --from "$work/w.none" $to
-check "a table of a file" fails 2 "no .c file" fast --from "$work/h.raw" \
+check "a table of a file" refuses 2 "no .c file" fast --from "$work/h.raw" \
     --size 8x8x4 -o "$none/a.c"
-check "swaps of vectors" fails 2 'for scalars' fast --space vec2 --refine 1 $to
-check "--bits 5" fails 2 'bits cannot be' fast --bits 5 $to
-check "--space vec4" fails 2 'space cannot be' fast --space vec4 $to
-check "a filter for white" fails 2 'no option of fast' white --filter box3 $to
-check "two frames of blue" fails 2 'one frame' blue --size 8x8x2 $to
-check "an output of no kind" fails 2 'not .png' fast -o "$none/out.gif"
-check "an output without a name" fails 2 'no name' fast -o "$none/.c"
+check "swaps of vectors" refuses 2 'for scalars' fast --space vec2 --refine 1 $to
+check "--bits 5" refuses 2 'bits cannot be' fast --bits 5 $to
+check "--space vec4" refuses 2 'space cannot be' fast --space vec4 $to
+check "a filter for white" refuses 2 'no option of fast' white --filter box3 $to
+check "two frames of blue" refuses 2 'one frame' blue --size 8x8x2 $to
+check "an output of no kind" refuses 2 'not .png' fast -o "$none/out.gif"
+check "an output without a name" refuses 2 'no name' fast -o "$none/.c"
 named_for_c()
 {
     "$noise" ign --size 8x8x1 -o "$work/a-b 1.c" &&
         grep -q 'struct brume_noise_table brume_a_b_1 = ' "$work/a-b 1.c"
 }
 check "what is no letter or digit in a name becomes _" named_for_c
-check "a spectrum of no kind" fails 2 'unknown extension' fast \
+check "a spectrum of no kind" refuses 2 'unknown extension' fast \
     --spectrum "$none/out.gif"
-check "an output in no folder" fails 1 'none/no/out.raw' blue \
+check "an output in no folder" refuses 1 'none/no/out.raw' blue \
     -o "$none/no/out.raw"
-check "measure without a file" fails 2 'no FILE' measure --size 8x8x1
-check "measure without a size" fails 2 'no --size' measure "$work/h.raw"
-check "measure of no file" fails 1 'h.none' measure "$work/h.none" \
+check "measure without a file" refuses 2 'no FILE' measure --size 8x8x1
+check "measure without a size" refuses 2 'no --size' measure "$work/h.raw"
+check "measure of no file" refuses 1 'h.none' measure "$work/h.none" \
     --size 8x8x1
-check "measure of too few bytes" fails 1 'fewer' measure "$work/h.raw" \
+check "measure of too few bytes" refuses 1 'fewer' measure "$work/h.raw" \
     --size 8x8x64
-check "measure of too many bytes" fails 1 'more' measure "$work/h.raw" \
+check "measure of too many bytes" refuses 1 'more' measure "$work/h.raw" \
     --size 8x8x1
 check "measure" says 'h.raw | 0' measure "$work/h.raw" --size 8x8x4
 check "--measure" says '^| white .* | 1' white --size 64x64x2 --measure
@@ -394,5 +375,5 @@ check "a spectrum" [ -s "$work/s.png" ]
 check "three bytes per vector" bytes "$work/a.raw" 1536
 "$noise" nrooks -o "$work/rooks.c"
 check "nrooks has a C form" [ -s "$work/rooks.c" ]
-check "nrooks is no texture" fails 2 'only -o' nrooks $to
+check "nrooks is no texture" refuses 2 'only -o' nrooks $to
 finish
