@@ -268,7 +268,7 @@ int brume_begin_frame(struct brume_frame *frame,
         return BRUME_ERR_SUN;
     err = brume_march_begin(frame, scene);
 #if BRUME_WITH_TAA
-    if (err == BRUME_OK)
+    if (err == BRUME_OK && frame->temporal == BRUME_TAA)
         frame->same = sameness(frame);
 #endif
     return err;

@@ -217,6 +217,17 @@ BRUME_INLINE uint32_t of_sample(uint32_t code)
     return code + ((code + 1u) >> 16);
 }
 
+BRUME_INLINE struct brume_sample
+brume_sample_from(const struct brume_radiance *in)
+{
+    struct brume_sample s = {sample_of(in->light), sample_of(in->transmittance),
+                             0};
+#if BRUME_WITH_DEPTH
+    s.depth = (uint16_t)in->depth;
+#endif
+    return s;
+}
+
 #if BRUME_WITH_TEMPORAL
 /* A word for all that decides on the planes but the image's size; never 0. */
 uint32_t brume_state_layout(const struct brume_frame *frame);

@@ -53,6 +53,7 @@ void brume_motion_begin(struct brume_state *state,
     }
     s->focal = before->focal;
     s->view = *now;
+    s->same = frame->same;
 }
 
 /* Distance of a code, Q16.16. */

@@ -60,15 +60,8 @@ static void fetch_row(const struct show *s, uint32_t y,
     for (uint32_t i = 0; i < s->fetched; i += BRUME_SPAN) {
         uint32_t n = smaller(s->fetched - i, BRUME_SPAN);
         brume_march_span(s->frame, s->from + i, y, n, s->span);
-        for (uint32_t k = 0; k < n; k++, out++) {
-            out->light = sample_of(s->span[k].light);
-            out->transmittance = sample_of(s->span[k].transmittance);
-#if BRUME_WITH_DEPTH
-            out->depth = (uint16_t)s->span[k].depth;
-#else
-            out->depth = 0;
-#endif
-        }
+        for (uint32_t k = 0; k < n; k++)
+            *out++ = brume_sample_from(&s->span[k]);
     }
 }
 

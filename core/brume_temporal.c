@@ -174,7 +174,6 @@ int brume_begin_state(struct brume_state *state,
 #if BRUME_WITH_TAA
     if (frame->temporal == BRUME_TAA)
         brume_motion_begin(s, frame);
-    s->same = frame->same;
 #endif
     return BRUME_OK;
 }
@@ -443,11 +442,7 @@ void brume_store_span(const struct brume_frame *frame,
     const struct brume_frame *f = frame;
     bool kept = f->temporal == BRUME_EMA || f->temporal == BRUME_WINDOW;
     for (uint32_t i = 0; i < n; i++) {
-        struct brume_sample sample = {sample_of(in[i].light),
-                                      sample_of(in[i].transmittance), 0};
-#if BRUME_WITH_DEPTH
-        sample.depth = (uint16_t)in[i].depth;
-#endif
+        struct brume_sample sample = brume_sample_from(&in[i]);
         if (kept && f->update == BRUME_UPDATE_ALL)
             put_ray(f, state, x + i, y, 0, &sample);
         else if (kept)
