@@ -50,7 +50,8 @@ TESTS = $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c)) \
 PROGRAMS = $(BUILD)/brume $(BUILD)/brume-bake $(BUILD)/brume-cloud \
 	$(BUILD)/brume-noise
 TARGET_PROGRAMS = $(PROGRAMS) $(BUILD)/tests/hash_scenes
-TEST_PROGRAMS = $(TESTS) $(BUILD)/brume-reference $(BUILD)/brume-spec-dump \
+REFERENCES = reference spec-dump monte-carlo octave-fit
+TEST_PROGRAMS = $(TESTS) $(REFERENCES:%=$(BUILD)/brume-%) \
 	$(BUILD)/tests/hash_scenes $(BUILD)/tests/section_dump \
 	$(BUILD)/tests/make_vdbs $(BUILD)/tests/noise_march \
 	$(BUILD)/brume-stability
@@ -126,13 +127,10 @@ $(BUILD)/brume-noise: $(BUILD)/tables/noise/noise_main.o $(NOISE_OBJ) \
 		$(filter-out %/main.o,$(HOST_OBJ)) $(BUILD)/libbrume.a
 	$(CC) $(LDFLAGS) -o $@ $^ -lm -lpthread
 
-$(BUILD)/brume-reference: $(BUILD)/tests/reference/reference_main.o \
-		$(REFERENCE_OBJ)
+.SECONDEXPANSION:
+$(REFERENCES:%=$(BUILD)/brume-%): $(BUILD)/brume-%: \
+		$(BUILD)/tests/reference/$$(subst -,_,$$*)_main.o $(REFERENCE_OBJ)
 	$(CXX) $(LDFLAGS) -o $@ $^ -lpthread
-
-$(BUILD)/brume-spec-dump: $(BUILD)/tests/reference/spec_dump_main.o \
-		$(REFERENCE_OBJ)
-	$(CXX) $(LDFLAGS) -o $@ $^
 
 $(BUILD)/brume-stability: $(STABILITY_OBJ) $(TEST_LIB_OBJ) \
 		$(BUILD)/libbrume.a

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "reference/float_dump.hpp"
+#include "reference/made.hpp"
 #include "reference/march.hpp"
 #include "reference/noise.hpp"
 #include "reference/pfm.hpp"
@@ -26,68 +27,6 @@ using namespace reference;
 namespace {
 
 const double pi = 3.14159265358979323846;
-const std::array<double, 12> identity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-
-using settings = std::vector<std::pair<std::string, std::string>>;
-
-float_dump make_dump(int nx, int ny, int nz,
-                     const std::function<double(int, int, int)> &density)
-{
-    float_dump dump;
-    dump.size = {nx, ny, nz};
-    dump.world_from_index = identity;
-    for (int k = 0; k < nz; k++)
-        for (int j = 0; j < ny; j++)
-            for (int i = 0; i < nx; i++)
-                dump.voxels.push_back(static_cast<float>(density(i, j, k)));
-    return dump;
-}
-
-volume make_volume(int nx, int ny, int nz,
-                   const std::function<double(int, int, int)> &density)
-{
-    return volume(make_dump(nx, ny, nz, density), 1e30);
-}
-
-// An unlit one-pixel view along +x from the origin, changed by `changes`.
-scene make_scene(const settings &changes)
-{
-    scene_builder builder;
-    const settings base = {{"size", "1x1"},          {"eye", "0 0 0"},
-                           {"target", "1 0 0"},      {"fov", "40"},
-                           {"density_scale", "1"},   {"step", "1"},
-                           {"light", "none"},        {"sun", "0 0"},
-                           {"light_density_scale", "1"},
-                           {"light_samples", "1"},   {"light_step", "1"},
-                           {"min_transmittance", "0"}};
-    for (const settings &list : {base, changes})
-        for (const auto &[key, value] : list)
-            builder.set(key, value);
-    return builder.finish();
-}
-
-std::string number(double value)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.17g", value);
-    return text;
-}
-
-std::string triple(const vec3 &v)
-{
-    return number(v.x) + "," + number(v.y) + "," + number(v.z);
-}
-
-picture render(const volume &v, const scene &s)
-{
-    return renderer(v, s).render({0, 0, s.width, s.height}, 2);
-}
-
-void check_near(double got, double want, double bound, const char *what)
-{
-    tap_check(std::fabs(got - want) <= bound, "%s: %.9g is %.9g within %.1g",
-              what, got, want, bound);
-}
 
 bool throws(const std::function<void()> &action, const std::string &part)
 {
@@ -105,34 +44,12 @@ bool throws(const std::function<void()> &action, const std::string &part)
 
 /// Slab ///
 
-// Density 0.5 in the 32 voxels whose low face is at x = 15.5, wide in y so
-// that a slanted sun ray does not leave by the side.
-const double slab_length = 32;
-
-volume make_slab()
-{
-    return make_volume(64, 128, 8, [](int i, int, int) {
-        return i >= 16 && i < 48 ? 0.5 : 0.0;
-    });
-}
-
-// Straight at the slab; a whole number of any step <= 16 from its face.
-const settings slab_view = {{"eye", "-48.5 64 4"},
-                            {"target", "0 64 4"},
-                            {"density_scale", "0.1"}};
-
-settings with(settings list, const settings &more)
-{
-    list.insert(list.end(), more.begin(), more.end());
-    return list;
-}
-
 void test_slab_transmittance()
 {
     const volume slab = make_slab();
     const double want = std::exp(-0.1 * 0.5 * slab_length);
     for (double step : {0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0}) {
-        const scene s = make_scene(with(slab_view, {{"step", number(step)}}));
+        const scene s = make_scene(with(slab_view(), {{"step", number(step)}}));
         const march_result m = renderer(slab, s).march_pixel(0, 0);
         tap_check(std::fabs(m.transmittance - want) < 1e-12 &&
                       std::fabs(m.radiance - (1 - want)) < 1e-12,
@@ -145,11 +62,11 @@ void test_pixel_value()
     const volume slab = make_slab();
     const double t = std::exp(-0.1 * 0.5 * slab_length);
     const scene grey = make_scene(
-        with(slab_view, {{"albedo", "0.5"}, {"background", "0.75"}}));
+        with(slab_view(), {{"albedo", "0.5"}, {"background", "0.75"}}));
     check_near(render(slab, grey).values[0], 0.5 * (1 - t) + 0.75 * t, 1e-12,
                "albedo and grey background");
     const scene rgb =
-        make_scene(with(slab_view, {{"background", "0.25,0.5,2"}}));
+        make_scene(with(slab_view(), {{"background", "0.25,0.5,2"}}));
     const picture image = render(slab, rgb);
     tap_check(image.channels == 3 && image.values.size() == 3,
               "a background of r,g,b makes three channels");
@@ -160,7 +77,7 @@ void test_thresholds()
 {
     const volume slab = make_slab();
     const auto march = [&](const char *key, const char *value) {
-        const scene s = make_scene(with(slab_view, {{key, value}}));
+        const scene s = make_scene(with(slab_view(), {{key, value}}));
         return renderer(slab, s).march_pixel(0, 0).transmittance;
     };
     tap_check(march("min_density", "0.5") == 1,
@@ -188,12 +105,12 @@ double slab_scattering(double sigma, double sigma_light, double mu)
 
 scene lit_slab(const char *sun, double step)
 {
-    return make_scene(with(slab_view, {{"light", "uniform"},
-                                       {"light_density_scale", "0.16"},
-                                       {"light_samples", "60000"},
-                                       {"light_step", number(step)},
-                                       {"step", number(step)},
-                                       {"sun", sun}}));
+    return make_scene(with(slab_view(), {{"light", "uniform"},
+                                         {"light_density_scale", "0.16"},
+                                         {"light_samples", "60000"},
+                                         {"light_step", number(step)},
+                                         {"step", number(step)},
+                                         {"sun", sun}}));
 }
 
 // With the sun along the axis both marches are geometric series.
@@ -234,12 +151,13 @@ void test_uniform_light_limit()
 // A single opaque enough step at depth x: L / (1 - T) is S itself.
 double slab_sun(const volume &slab, double depth, double jitter)
 {
-    const scene s = make_scene(with(slab_view, {{"light", "log"},
-                                                {"light_density_scale", "0.1"},
-                                                {"light_samples", "5"},
-                                                {"light_step", "1"},
-                                                {"min_transmittance", "1"},
-                                                {"sun", "-90 0"}}));
+    const scene s =
+        make_scene(with(slab_view(), {{"light", "log"},
+                                      {"light_density_scale", "0.1"},
+                                      {"light_samples", "5"},
+                                      {"light_step", "1"},
+                                      {"min_transmittance", "1"},
+                                      {"sun", "-90 0"}}));
     // min_transmittance 1 stops the march after its first sample.
     const ray r = {{15.5 + depth, 64, 4}, {1, 0, 0}};
     const march_result m = renderer(slab, s).march(r, 0, jitter);

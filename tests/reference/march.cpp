@@ -8,6 +8,8 @@
 #include <limits>
 #include <thread>
 
+#include "sky.hpp"
+
 namespace reference
 {
 
@@ -22,7 +24,10 @@ static vec3 sun_direction(const scene &s)
 
 // The frame is built in world space, where it is right-handed, and then
 // taken to pool space.
-renderer::renderer(const volume &v, const scene &s) : volume_(v), scene_(s)
+renderer::renderer(const volume &v, const scene &s)
+    : volume_(v), scene_(s), sun_(v.pool_direction(sun_direction(s))),
+      zenith_(v.pool_direction({0, 1, 0})), sun_light_(v, scene_, sun_),
+      sky_light_(v, scene_, zenith_)
 {
     const vec3 forward = normalise(s.target - s.eye);
     const vec3 right = normalise(cross(forward, s.up));
@@ -31,7 +36,6 @@ renderer::renderer(const volume &v, const scene &s) : volume_(v), scene_(s)
     forward_ = v.pool_direction(forward);
     right_ = v.pool_direction(right);
     up_ = v.pool_direction(up);
-    sun_ = v.pool_direction(sun_direction(s));
     pixel_ = 2 * std::tan(s.fov / 2 * radians) / s.height;
 }
 
@@ -71,39 +75,48 @@ renderer::lattice_range renderer::clip(const ray &r, double jitter) const
             std::ceil(t_max / scene_.step - jitter) + 1};
 }
 
-// Samples at s_k = light_step·2^k, moved by the jitter; the weights are not.
-double renderer::log_depth(const vec3 &p, double jitter) const
+// The octaves' sums from the one optical depth.
+void renderer::add_sun(double lost, const vec3 &p, double jitter,
+                       ray_sums &sums) const
 {
-    double sum = 0, distance = scene_.light_step;
-    for (int k = 0; k < scene_.light_samples; k++, distance *= 2) {
-        const vec3 q = p + sun_ * (distance * (1 + jitter));
-        if (!volume_.contains(q))
-            break;
-        sum += volume_.density(q, scene_.filter) * distance;
+    const double tau = sun_light_.depth(p, jitter);
+    double extinction = 1;
+    for (int i = 0; i < scene_.lit.octaves; i++) {
+        sums.sun[i] += lost * std::exp(-extinction * tau);
+        extinction *= scene_.lit.octave_a;
     }
-    return scene_.light_density_scale * sum;
 }
 
-double renderer::uniform_depth(const vec3 &p) const
+// The sum of b^i P_i A_i.
+double renderer::in_scattering(const ray &r, const ray_sums &sums) const
 {
-    double sum = 0;
-    for (int i = 0; i < scene_.light_samples; i++) {
-        const vec3 q = p + sun_ * ((i + 0.5) * scene_.light_step);
-        if (!volume_.contains(q))
-            break;
-        sum += volume_.density(q, scene_.filter);
+    const lighting &l = scene_.lit;
+    const double cosine = dot(r.direction, sun_);
+    double sum = 0, share = 1, width = 1;
+    for (int i = 0; i < l.octaves; i++) {
+        sum +=
+            share * phase_value(widened(l.phase, width), cosine) * sums.sun[i];
+        share *= l.octave_b;
+        width *= l.octave_c;
     }
-    return scene_.light_density_scale * scene_.light_step * sum;
+    return sum;
 }
 
-double renderer::sun_transmittance(const vec3 &p, double jitter) const
+static vec3 at_most(const vec3 &c, double limit)
 {
-    switch (scene_.light) {
-    case light_model::log: return std::exp(-log_depth(p, jitter));
-    case light_model::uniform: return std::exp(-uniform_depth(p));
-    case light_model::none: break;
-    }
-    return 1;
+    return {std::min(c.x, limit), std::min(c.y, limit), std::min(c.z, limit)};
+}
+
+march_result renderer::finish(const ray &r, const ray_sums &sums) const
+{
+    const lighting &l = scene_.lit;
+    const vec3 light =
+        l.sun_colour * in_scattering(r, sums) + sky_light_.colour_of(sums.sky);
+    const vec3 seen = at_most(light * (l.exposure * scene_.albedo), max_light);
+    const double lost = 1 - sums.transmittance;
+    const double left = lost > 0 ? haze_share(l, sums.moment / lost) : 1;
+    const vec3 colour = seen * left;
+    return {colour.x, 1 - left * lost, colour};
 }
 
 // t_k is computed from k, never accumulated: the lattice does not depend on
@@ -111,7 +124,7 @@ double renderer::sun_transmittance(const vec3 &p, double jitter) const
 march_result renderer::march(const ray &r, double jitter,
                              double light_jitter) const
 {
-    march_result out = {0, 1};
+    ray_sums sums;
     const lattice_range range = clip(r, jitter);
     for (double k = range.first; k <= range.last; k++) {
         const double t = (k + jitter) * scene_.step;
@@ -121,13 +134,23 @@ march_result renderer::march(const ray &r, double jitter,
             continue;
         const double a =
             std::exp(-scene_.density_scale * density * scene_.step);
-        out.radiance += out.transmittance * (1 - a) * scene_.albedo *
-                        sun_transmittance(p, light_jitter);
-        out.transmittance *= a;
-        if (out.transmittance < scene_.min_transmittance)
+        const double lost = sums.transmittance * (1 - a);
+        add_sun(lost, p, light_jitter, sums);
+        sky_light_.add(p, lost, sums.sky);
+        sums.moment += lost * t;
+        sums.transmittance *= a;
+        if (sums.transmittance < scene_.min_transmittance)
             break;
     }
-    return out;
+    return finish(r, sums);
+}
+
+vec3 renderer::background(const ray &r) const
+{
+    if (!scene_.lit.sky)
+        return scene_.background;
+    return sky_colour(scene_.lit, dot(r.direction, zenith_),
+                      dot(r.direction, sun_));
 }
 
 double renderer::jitter_of(int x, int y, channel c) const
@@ -150,23 +173,44 @@ march_result renderer::march_pixel(int x, int y) const
 
 void renderer::render_row(int y, const rectangle &area, picture &out) const
 {
-    const double background[3] = {scene_.background.x, scene_.background.y,
-                                  scene_.background.z};
     size_t at = static_cast<size_t>(y - area.y_min) *
                 static_cast<size_t>(out.width) *
                 static_cast<size_t>(out.channels);
     for (int x = area.x_min; x < area.x_max; x++) {
         const march_result m = march_pixel(x, y);
+        const vec3 sum =
+            m.colour + background(camera_ray(x, y)) * m.transmittance;
+        const double channels[3] = {sum.x, sum.y, sum.z};
         for (int c = 0; c < out.channels; c++)
-            out.values[at++] = m.radiance + m.transmittance * background[c];
+            out.values[at++] = channels[c];
     }
+}
+
+static bool is_grey(const vec3 &c)
+{
+    return c.x == c.y && c.y == c.z;
+}
+
+// Does anything that is in use have a colour?
+static bool is_coloured(const scene &s)
+{
+    const lighting &l = s.lit;
+    bool grey = is_grey(l.sun_colour) && !s.background_is_rgb && !l.sky;
+    if (l.ambient == ambient_kind::constant)
+        grey = grey && is_grey(l.ambient_colour);
+    if (l.ambient == ambient_kind::gradient)
+        grey = grey && is_grey(l.ambient_top) && is_grey(l.ambient_bottom);
+    if (l.ambient == ambient_kind::cube)
+        for (const vec3 &side : l.ambient_cube)
+            grey = grey && is_grey(side);
+    return !grey;
 }
 
 picture renderer::render(const rectangle &area, int threads) const
 {
     picture out{area.x_max - area.x_min,
                 area.y_max - area.y_min,
-                scene_.background_is_rgb ? 3 : 1,
+                is_coloured(scene_) ? 3 : 1,
                 {}};
     out.values.resize(static_cast<size_t>(out.width) *
                       static_cast<size_t>(out.height) *

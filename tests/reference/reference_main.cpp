@@ -16,6 +16,7 @@
 
 #include "march.hpp"
 #include "pfm.hpp"
+#include "sky.hpp"
 
 namespace {
 
@@ -24,8 +25,12 @@ using namespace reference;
 struct options {
     std::string volume, scene, output;
     std::vector<std::string> settings;
-    int threads = 0;             // 0: one per processor
+    int threads = 0;               // 0: one per processor
+    int directions = 0;            // 0: as the scene has it
     rectangle area = {0, 0, 0, 0}; // empty: the whole picture
+    std::string cone;              // empty: as it is
+    bool display = false;
+    int bits = 0;                  // 0: not rounded
     bool step_check = false;
     bool help = false;
 };
@@ -40,14 +45,23 @@ void print_help()
            "  --scene FILE          the scene: key = value a line, # comments\n"
            "  --set key=value       one more setting; wins over the file\n"
            "  -o FILE               linear PFM, grey, or RGB when the"
-           " background is r,g,b\n"
+           " background or\n"
+           "                        light has colour\n"
            "  --threads N           default: one per processor; does not"
            " change the result\n"
+           "  --display             values as shown: `output` applied, 0 to 1\n"
+           "  --bits N              as --display, rounded to the nearest code of N bits\n"
+           "  --directions N        over which the sky's visibility is averaged"
+           " (256)\n"
+           "  --cone W,P,L,F,N      rule of light = cone: weight of the sample's own\n"
+           "                        density, place in a segment, level of mips,\n"
+           "                        and from sample F on N doublings have two\n"
+           "                        samples (1,0.5,-2,4,2)\n"
            "  --view-range A,B,C,D  only pixels A <= x < C, B <= y < D\n"
            "  --step-check          render at half the step too; print how"
            " far apart the two\n"
            "                        are, in 1/255\n\n"
-           "Scene keys, their defaults (lit: light is not none):\n";
+           "Scene keys and their defaults:\n";
     print_scene_keys(std::cout);
 }
 
@@ -98,6 +112,14 @@ options parse_options(const std::vector<std::string> &args)
             o.output = value();
         else if (arg == "--threads")
             o.threads = parse_int(value(), 1, 1024);
+        else if (arg == "--directions")
+            o.directions = parse_int(value(), 1, 65536);
+        else if (arg == "--cone")
+            o.cone = value();
+        else if (arg == "--bits")
+            o.bits = parse_int(value(), 1, 16);
+        else if (arg == "--display")
+            o.display = true;
         else if (arg == "--view-range")
             o.area = parse_range(value());
         else if (arg == "--step-check")
@@ -110,6 +132,15 @@ options parse_options(const std::vector<std::string> &args)
     return o;
 }
 
+void set_cone(cone_rule &rule, const std::string &text)
+{
+    char end;
+    if (std::sscanf(text.c_str(), "%lf,%lf,%d,%d,%d%c", &rule.first,
+                    &rule.place, &rule.level, &rule.pairs_from, &rule.pairs,
+                    &end) != 5)
+        throw std::runtime_error("--cone: expected W,P,L,F,N");
+}
+
 scene load_scene(const options &o)
 {
     scene_builder builder;
@@ -117,7 +148,12 @@ scene load_scene(const options &o)
         builder.read_file(o.scene);
     for (const std::string &pair : o.settings)
         builder.set_pair(pair);
-    return builder.finish();
+    scene s = builder.finish();
+    if (o.directions != 0)
+        s.lit.sky_directions = o.directions;
+    if (!o.cone.empty())
+        set_cone(s.lit.cone, o.cone);
+    return s;
 }
 
 // The discretisation error to expect of the scene's step: `name=value` a
@@ -137,6 +173,13 @@ void print_step_check(const picture &a, const picture &b)
                 std::sqrt(squares / n), sum / n, worst);
 }
 
+void round_to(picture &image, int bits)
+{
+    const double top = std::ldexp(1, bits) - 1;
+    for (double &value : image.values)
+        value = std::floor(value * top + 0.5) / top;
+}
+
 void run(const options &o)
 {
     if (o.volume.empty() || o.output.empty())
@@ -153,12 +196,17 @@ void run(const options &o)
     const int threads = o.threads ? o.threads : processors;
 
     const volume v(read_float_dump(o.volume), s.max_density);
-    const picture image = renderer(v, s).render(area, threads);
-    write_pfm(o.output, image);
+    picture image = renderer(v, s).render(area, threads);
     if (o.step_check) {
         s.step /= 2;
         print_step_check(image, renderer(v, s).render(area, threads));
     }
+    if (o.display || o.bits != 0)
+        for (double &value : image.values)
+            value = display_value(s.lit.output, value);
+    if (o.bits != 0)
+        round_to(image, o.bits);
+    write_pfm(o.output, image);
 }
 
 } // namespace

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
 
-#include "scene.hpp"
+#include "scene_values.hpp"
 
-#include <cerrno>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
-#include <limits>
 #include <ostream>
 #include <stdexcept>
 #include <vector>
@@ -14,74 +11,7 @@
 namespace reference
 {
 
-static const double infinity = std::numeric_limits<double>::infinity();
-
 /// Values ///
-
-static double parse_number(const std::string &text)
-{
-    char *end = nullptr;
-    const double value = std::strtod(text.c_str(), &end);
-    if (text.empty() || *end != '\0' || !std::isfinite(value))
-        throw std::runtime_error("'" + text + "' is not a number");
-    return value;
-}
-
-static double parse_in(const std::string &text, double low, double high)
-{
-    const double value = parse_number(text);
-    if (value < low || value > high)
-        throw std::runtime_error(text + " is out of range");
-    return value;
-}
-
-static double parse_positive(const std::string &text)
-{
-    return parse_in(text, std::numeric_limits<double>::min(), infinity);
-}
-
-static uint32_t parse_integer(const std::string &text, double low, double high)
-{
-    const double value = parse_in(text, low, high);
-    if (value != std::floor(value))
-        throw std::runtime_error(text + " is not an integer");
-    return static_cast<uint32_t>(value);
-}
-
-// Numbers separated by commas, by blanks, or by both.
-static std::vector<double> parse_list(const std::string &text)
-{
-    static const char separators[] = ", \t";
-    std::vector<double> values;
-    size_t at = text.find_first_not_of(separators);
-    while (at != std::string::npos) {
-        const size_t end = text.find_first_of(separators, at);
-        values.push_back(parse_number(text.substr(at, end - at)));
-        at = text.find_first_not_of(separators, end);
-    }
-    return values;
-}
-
-static vec3 parse_vec3(const std::string &text)
-{
-    const std::vector<double> v = parse_list(text);
-    if (v.size() != 3)
-        throw std::runtime_error("expected three numbers");
-    return {v[0], v[1], v[2]};
-}
-
-// The position of `text` among `words`.
-static size_t parse_word(const std::string &text,
-                         const std::vector<std::string> &words)
-{
-    std::string all;
-    for (size_t i = 0; i < words.size(); i++) {
-        if (words[i] == text)
-            return i;
-        all += (i ? ", " : "") + words[i];
-    }
-    throw std::runtime_error("'" + text + "' is not one of " + all);
-}
 
 static void set_size(scene &s, const std::string &text)
 {
@@ -131,20 +61,9 @@ static void set_noise(scene &s, const std::string &v)
                        "ign-thesis", "rank1"}));
 }
 
-// Which scenes must set a key: if_lit is every light but `none`.
-enum class need { always, if_lit, never };
-
-struct scene_key {
-    const char *name;
-    const char *fallback; // the default as it would be written, or null
-    need required;
-    const char *meaning;
-    void (*set)(scene &, const std::string &);
-};
-
 using text = const std::string &;
 
-static const scene_key keys[] = {
+static const std::vector<scene_key> march_keys = {
     {"size", nullptr, need::always, "WIDTHxHEIGHT, pixels", set_size},
     {"eye", nullptr, need::always, "x,y,z, world space",
      [](scene &s, text v) { s.eye = parse_vec3(v); }},
@@ -154,10 +73,10 @@ static const scene_key keys[] = {
      [](scene &s, text v) { s.up = parse_vec3(v); }},
     {"fov", nullptr, need::always, "vertical, degrees",
      [](scene &s, text v) { s.fov = parse_in(v, 1e-3, 179); }},
-    {"sun", nullptr, need::if_lit, "azimuth elevation, degrees", set_sun},
+    {"sun", nullptr, need::sun, "azimuth elevation, degrees", set_sun},
     {"density_scale", nullptr, need::always, "extinction per voxel",
      [](scene &s, text v) { s.density_scale = parse_in(v, 0, infinity); }},
-    {"light_density_scale", nullptr, need::if_lit, "along light rays",
+    {"light_density_scale", nullptr, need::light_scale, "along light rays",
      [](scene &s, text v) {
          s.light_density_scale = parse_in(v, 0, infinity);
      }},
@@ -171,21 +90,23 @@ static const scene_key keys[] = {
      [](scene &s, text v) { s.min_transmittance = parse_in(v, 0, 1); }},
     {"max_density", nullptr, need::never, "voxels are clamped to it",
      [](scene &s, text v) { s.max_density = parse_positive(v); }},
-    {"filter", "nearest", need::never, "nearest | trilinear",
+    {"filter", "nearest", need::never,
+     "nearest | trilinear | stochastic: its mean, trilinear",
      [](scene &s, text v) {
-         s.filter =
-             static_cast<lookup>(parse_word(v, {"nearest", "trilinear"}));
+         const size_t n = parse_word(v, {"nearest", "trilinear", "stochastic"});
+         s.filter = n == 0 ? lookup::nearest : lookup::trilinear;
      }},
-    {"light", nullptr, need::always, "none | log | uniform",
+    {"light", nullptr, need::always,
+     "none | log | uniform | cone | cache: the exact optical depth",
      [](scene &s, text v) {
          s.light = static_cast<light_model>(
-             parse_word(v, {"none", "log", "uniform"}));
+             parse_word(v, {"none", "log", "uniform", "cone", "cache"}));
      }},
-    {"light_samples", nullptr, need::if_lit, "1..65535",
+    {"light_samples", nullptr, need::light_rays, "1..65535",
      [](scene &s, text v) {
          s.light_samples = static_cast<int>(parse_integer(v, 1, 65535));
      }},
-    {"light_step", nullptr, need::if_lit, "voxels",
+    {"light_step", nullptr, need::light_rays, "voxels",
      [](scene &s, text v) { s.light_step = parse_positive(v); }},
     {"jitter", "none", need::never, "none | primary | light | both",
      set_jitter},
@@ -196,23 +117,28 @@ static const scene_key keys[] = {
     {"frame", "0", need::never, "0..4294967295",
      [](scene &s, text v) { s.frame = parse_integer(v, 0, 4294967295.0); }},
     {"background", "0", need::never, "grey, or r,g,b; linear", set_background},
-    {"output", nullptr, need::never, "ignored: the output is linear",
-     [](scene &, text) {}},
     {"skip", nullptr, need::never, "ignored: nothing is skipped",
      [](scene &, text) {}},
 };
 
+static std::vector<scene_key> all_keys()
+{
+    std::vector<scene_key> all = march_keys;
+    all.insert(all.end(), light_keys().begin(), light_keys().end());
+    return all;
+}
+
 void print_scene_keys(std::ostream &out)
 {
-    for (const scene_key &key : keys) {
+    for (const scene_key &key : all_keys()) {
         std::string line = std::string("  ") + key.name;
         line.resize(23, ' ');
         if (key.fallback)
             line += key.fallback;
         else if (key.required == need::always)
             line += "required";
-        else if (key.required == need::if_lit)
-            line += "if lit";
+        else if (key.required != need::never)
+            line += "if used";
         else
             line += "-";
         line.resize(34, ' ');
@@ -234,14 +160,14 @@ static std::string trim(const std::string &s)
 scene_builder::scene_builder()
 {
     scene_.max_density = infinity;
-    for (const scene_key &key : keys)
+    for (const scene_key &key : all_keys())
         if (key.fallback)
             key.set(scene_, key.fallback);
 }
 
 void scene_builder::set(const std::string &name, const std::string &value)
 {
-    for (const scene_key &key : keys) {
+    for (const scene_key &key : all_keys()) {
         if (name != key.name)
             continue;
         try {
@@ -284,13 +210,27 @@ void scene_builder::read_file(const std::string &path)
         throw std::runtime_error(path + ": cannot read");
 }
 
+static bool is_needed(need what, const scene &s)
+{
+    const bool dark = s.light == light_model::none;
+    const bool phased = s.lit.phase.kind == phase_kind::schlick ||
+                        s.lit.phase.g != 0 || s.lit.phase.weight != 0;
+    switch (what) {
+    case need::always: return true;
+    case need::sun: return !dark || phased || s.lit.sun_size > 0;
+    case need::light_scale:
+        return !dark || (s.lit.ambient != ambient_kind::none &&
+                         s.lit.visibility != visibility_kind::open);
+    case need::light_rays: return !dark && s.light != light_model::cache;
+    case need::never: break;
+    }
+    return false;
+}
+
 scene scene_builder::finish() const
 {
-    const bool lit = scene_.light != light_model::none;
-    for (const scene_key &key : keys) {
-        const bool required = key.required == need::always ||
-                              (key.required == need::if_lit && lit);
-        if (required && !given_.count(key.name))
+    for (const scene_key &key : all_keys()) {
+        if (is_needed(key.required, scene_) && !given_.count(key.name))
             throw std::runtime_error("the scene lacks '" +
                                      std::string(key.name) + "'");
     }

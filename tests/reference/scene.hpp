@@ -12,6 +12,7 @@
 #include <set>
 #include <string>
 
+#include "lighting.hpp"
 #include "noise.hpp"
 #include "vec3.hpp"
 #include "volume.hpp"
@@ -19,7 +20,7 @@
 namespace reference
 {
 
-enum class light_model { none, log, uniform };
+enum class light_model { none, log, uniform, cone, cache };
 
 struct scene {
     int width, height;
@@ -43,6 +44,7 @@ struct scene {
     uint32_t frame;
     vec3 background;        // linear
     bool background_is_rgb; // written r,g,b: the picture has three channels
+    lighting lit;
 };
 
 // Collects settings, the later of two winning, and hands out the scene once

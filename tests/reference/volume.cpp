@@ -79,6 +79,23 @@ vec3 volume::box_max() const
             static_cast<double>(dump_.size[2])};
 }
 
+std::array<vec3, 2> volume::occupied_box() const
+{
+    vec3 low = box_max(), high = box_min();
+    const std::array<int, 3> &n = dump_.size;
+    for (int k = 0; k < n[2]; k++)
+        for (int j = 0; j < n[1]; j++)
+            for (int i = 0; i < n[0]; i++)
+                if (voxel(i, j, k) > 0) {
+                    low = {std::min(low.x, i - 0.5), std::min(low.y, j - 0.5),
+                           std::min(low.z, k - 0.5)};
+                    high = {std::max(high.x, i + 0.5),
+                            std::max(high.y, j + 0.5),
+                            std::max(high.z, k + 0.5)};
+                }
+    return {low, high};
+}
+
 double volume::voxel(int i, int j, int k) const
 {
     if (i < 0 || j < 0 || k < 0 || i >= dump_.size[0] || j >= dump_.size[1] ||

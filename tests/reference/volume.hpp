@@ -27,13 +27,17 @@ public:
     bool contains(const vec3 &p) const;
     vec3 box_min() const;
     vec3 box_max() const;
+    // Low and high corner of the voxels, from face to face, that are not 0.
+    std::array<vec3, 2> occupied_box() const;
+
+    const std::array<int, 3> &size() const { return dump_.size; }
+    double voxel(int i, int j, int k) const; // 0 outside the pool
 
     vec3 pool_from_world(const vec3 &p) const;
     // The pool-space unit vector along a world-space direction.
     vec3 pool_direction(const vec3 &d) const;
 
 private:
-    double voxel(int i, int j, int k) const;
     double nearest(const vec3 &p) const;
     double trilinear(const vec3 &p) const;
     void gather(int i, int j, int k, double corner[8]) const;
