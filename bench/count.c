@@ -30,9 +30,10 @@ BRUME_INLINE bool counted(const struct brume_frame *f, uint32_t x, uint32_t y,
     return found;
 }
 
-#define density_at counted
+#define find_density counted
 #define brume_march_begin count_march_begin
 #define brume_march_span count_march_span
+#define brume_mean_depth count_mean_depth
 #include "brume_march.c" /* by -Icore */
 
 #define STRIP 16u

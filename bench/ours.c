@@ -36,7 +36,7 @@ int ours_frame(struct brume_frame *frame, const struct volume_file *file,
     for (size_t i = 0; i < n && !failed; i++)
         failed = scene_set(said, settings[i], "contender", err, err_size);
     if (!failed)
-        failed = scene_apply(said, file, &scene, err, err_size);
+        failed = scene_apply(said, file, &scene, NULL, err, err_size);
     free(said);
     if (failed)
         return -1;

@@ -169,6 +169,35 @@ void brume_scene_default(struct brume_scene *scene,
 
 /// Frame ///
 
+/* The last of each kind that there may be. */
+#if BRUME_WITH_LIGHTING
+enum {
+    LAST_LIGHT = BRUME_CACHE,
+    LAST_FILTER = BRUME_STOCHASTIC,
+    LAST_OUTPUT = BRUME_FILMIC
+};
+#else
+enum {
+    LAST_LIGHT = BRUME_NO_LIGHT,
+    LAST_FILTER = BRUME_TRILINEAR,
+    LAST_OUTPUT = BRUME_SRGB
+};
+#endif
+
+/* Does the scene ask for what was compiled out, as far as the march does not
+ * find that? */
+static bool is_missing(const struct brume_scene *s)
+{
+#if BRUME_WITH_LIGHTING
+    if ((!BRUME_WITH_CONE && s->light == BRUME_CONE) ||
+        (!BRUME_WITH_CACHE && s->light == BRUME_CACHE) ||
+        (!BRUME_WITH_STOCHASTIC && s->filter == BRUME_STOCHASTIC) ||
+        (!BRUME_WITH_TONE && s->output == BRUME_FILMIC))
+        return true;
+#endif
+    return !BRUME_WITH_NOISE && s->jitter != 0 && s->noise != BRUME_NOISE_NONE;
+}
+
 static int check_scene(const struct brume_scene *s)
 {
     if (s->width < 1 || s->width > BRUME_MAX_SIZE || s->height < 1 ||
@@ -177,26 +206,25 @@ static int check_scene(const struct brume_scene *s)
     if (s->step < BRUME_MIN_STEP || s->step > BRUME_MAX_STEP ||
         s->light_step < BRUME_MIN_STEP || s->light_step > BRUME_MAX_STEP)
         return BRUME_ERR_STEP;
-    if (s->light > BRUME_NO_LIGHT ||
-        (s->light == BRUME_LOG && s->light_samples > BRUME_MAX_LOG_SAMPLES) ||
+    if (s->light > LAST_LIGHT ||
+        ((s->light == BRUME_LOG || s->light == BRUME_CONE) &&
+         s->light_samples > BRUME_MAX_LOG_SAMPLES) ||
         s->light_samples > BRUME_MAX_UNIFORM_SAMPLES)
         return BRUME_ERR_SAMPLES;
-    if (s->filter > BRUME_TRILINEAR || s->jitter > BRUME_JITTER_BOTH ||
+    if (s->filter > LAST_FILTER || s->jitter > BRUME_JITTER_BOTH ||
         !brume_noise_usable(s->noise, s->noise_table) ||
-        s->output > BRUME_SRGB || s->albedo > 0x10000u ||
+        s->output > LAST_OUTPUT || s->albedo > 0x10000u ||
         s->min_transmittance > 0x10000u)
         return BRUME_ERR_SCENE;
     for (int c = 0; c < 3; c++)
         if (s->background[c] > 0x10000u)
             return BRUME_ERR_SCENE;
-    if (!BRUME_WITH_NOISE && s->jitter != 0 && s->noise != BRUME_NOISE_NONE)
-        return BRUME_ERR_FEATURE;
-    return BRUME_OK;
+    return is_missing(s) ? BRUME_ERR_FEATURE : BRUME_OK;
 }
 
 static void copy_scene(struct brume_frame *f, const struct brume_scene *s)
 {
-    uint32_t beyond = s->filter == BRUME_TRILINEAR ? 1 : 0;
+    uint32_t beyond = s->filter != BRUME_NEAREST ? 1 : 0;
     f->width = s->width;
     f->height = s->height;
     f->frame = s->frame;
@@ -210,7 +238,7 @@ static void copy_scene(struct brume_frame *f, const struct brume_scene *s)
     f->output = s->output;
     for (int i = 0; i < 3; i++) {
         f->background[i] = s->background[i];
-        /* A trilinear lookup reads one voxel beyond. */
+        /* Lookups but the nearest read one voxel beyond. */
         f->limit[i] = (8u * f->volume->cell_count[i] - beyond) << 16;
         f->sun[i] = s->sun[i];
     }
@@ -227,8 +255,8 @@ static uint32_t sameness(const struct brume_frame *f)
         (uint32_t)f->sun[2],
         f->min_density,
         f->max_density,
-        f->tau_m,
-        f->tau_shift,
+        f->tau.m,
+        f->tau.shift,
         f->min_transmittance,
         f->albedo,
         f->step,
@@ -242,6 +270,10 @@ static uint32_t sameness(const struct brume_frame *f)
         h = h * 16777619u ^ f->table[i];
     for (uint32_t i = 0; i < sizeof part / sizeof *part; i++)
         h = (h ^ h >> 15) * 2246822519u ^ part[i];
+#if BRUME_WITH_LIGHTING
+    if (f->lit.on)
+        h = (h ^ h >> 15) * 2246822519u ^ brume_lit_sameness(f);
+#endif
     return h;
 }
 #endif
@@ -256,6 +288,10 @@ int brume_begin_frame(struct brume_frame *frame,
     int err = check_scene(scene);
     if (err == BRUME_OK)
         err = brume_lattice_check(scene);
+#if BRUME_WITH_LIGHTING
+    if (err == BRUME_OK)
+        err = brume_lit_check(scene);
+#endif
     if (err)
         return err;
     frame->volume = volume;
@@ -267,6 +303,10 @@ int brume_begin_frame(struct brume_frame *frame,
     if (!brume_normalise(frame->sun))
         return BRUME_ERR_SUN;
     err = brume_march_begin(frame, scene);
+#if BRUME_WITH_AMBIENT || BRUME_WITH_SKY
+    if (err == BRUME_OK)
+        brume_sky_begin(frame, scene);
+#endif
 #if BRUME_WITH_TAA
     if (err == BRUME_OK && frame->temporal == BRUME_TAA)
         frame->same = sameness(frame);
@@ -295,10 +335,9 @@ int brume_render_rect(const struct brume_frame *frame, unsigned x, unsigned y,
                       size_t stride)
 {
     struct brume_radiance row[BRUME_SPAN];
-    unsigned bytes = brume_pixel_bytes(pixel_format);
     if (frame == NULL || dst == NULL)
         return BRUME_ERR_NULL;
-    int err = brume_pixels_check(pixel_format, w, h, stride);
+    int err = brume_pixels_check(pixel_format, x, w, h, stride);
     if (err)
         return err;
     if (!is_plain(frame))
@@ -310,8 +349,8 @@ int brume_render_rect(const struct brume_frame *frame, unsigned x, unsigned y,
         for (unsigned i = 0; i < w; i += BRUME_SPAN) {
             unsigned n = w - i < BRUME_SPAN ? w - i : BRUME_SPAN;
             brume_march_span(frame, x + i, y + j, n, row);
-            brume_pack_span(frame, row, n, pixel_format,
-                            to + (size_t)i * bytes);
+            brume_pack_span(frame, x + i, y + j, row, n, pixel_format,
+                            to + brume_pixel_offset(pixel_format, i));
         }
     }
     return BRUME_OK;
@@ -335,18 +374,21 @@ int brume_march_rect(const struct brume_frame *frame, unsigned x, unsigned y,
 
 int brume_pack_rect(const struct brume_frame *frame,
                     const struct brume_radiance *in, size_t in_stride,
-                    unsigned w, unsigned h, int pixel_format, void *dst,
-                    size_t stride)
+                    unsigned x, unsigned y, unsigned w, unsigned h,
+                    int pixel_format, void *dst, size_t stride)
 {
     if (frame == NULL || in == NULL || dst == NULL)
         return BRUME_ERR_NULL;
-    int err = brume_pixels_check(pixel_format, w, h, stride);
-    if (err == BRUME_OK && h > 1 && in_stride < w)
-        err = BRUME_ERR_RECT;
-    for (unsigned j = 0; err == BRUME_OK && j < h; j++)
-        brume_pack_span(frame, in + j * in_stride, w, pixel_format,
+    const uint16_t image[2] = {frame->width, frame->height};
+    int err = brume_pixels_check(pixel_format, x, w, h, stride);
+    if (err)
+        return err;
+    if (!brume_rect_fits(image, x, y, w, h) || (h > 1 && in_stride < w))
+        return BRUME_ERR_RECT;
+    for (unsigned j = 0; j < h; j++)
+        brume_pack_span(frame, x, y + j, in + j * in_stride, w, pixel_format,
                         (uint8_t *)dst + j * stride);
-    return err;
+    return BRUME_OK;
 }
 
 #endif

@@ -26,7 +26,8 @@
  *          sequences (optimised builds; the bound of each target is in
  *          docs/TARGETS.md).
  *          Structs may be copied; they point only at the asset (brume_volume),
- *          at the volume and at a noise table's values (brume_frame).
+ *          at the volume, at a noise table's values, at the lighting and what
+ *          that points at (brume_frame).
  * Threads  Functions that take pointers to const may run at the same time:
  *          one brume_frame serves any number of brume_render_rect.
  * Errors   Functions returning int give BRUME_OK (0) or a negative
@@ -110,6 +111,39 @@ extern "C" {
 #ifndef BRUME_WITH_RESOLUTION /* half and quarter; 0.6 KiB */
 #define BRUME_WITH_RESOLUTION BRUME_WITH_SEQUENCES
 #endif
+/* All of "Lighting" below, or which of it: struct brume_lighting with phase
+ * functions and octaves of multiple scattering. */
+#ifndef BRUME_WITH_LIGHTING
+#define BRUME_WITH_LIGHTING 1
+#endif
+#ifndef BRUME_WITH_AMBIENT /* light from the sky */
+#define BRUME_WITH_AMBIENT BRUME_WITH_LIGHTING
+#endif
+#ifndef BRUME_WITH_COLOUR /* coloured light; needs BRUME_WITH_RGB */
+#define BRUME_WITH_COLOUR (BRUME_WITH_LIGHTING && BRUME_WITH_RGB)
+#endif
+#ifndef BRUME_WITH_CONE /* light = cone: mips */
+#define BRUME_WITH_CONE BRUME_WITH_LIGHTING
+#endif
+#ifndef BRUME_WITH_CACHE /* light = cache */
+#define BRUME_WITH_CACHE BRUME_WITH_LIGHTING
+#endif
+#ifndef BRUME_WITH_STOCHASTIC /* filter = stochastic */
+#define BRUME_WITH_STOCHASTIC \
+    (BRUME_WITH_LIGHTING && BRUME_WITH_NEAREST && BRUME_WITH_NOISE)
+#endif
+#ifndef BRUME_WITH_SKY /* gradient, sun disc and haze behind the volume */
+#define BRUME_WITH_SKY BRUME_WITH_LIGHTING
+#endif
+#ifndef BRUME_WITH_SHADOW /* the shadow on other things; 2.5 KiB */
+#define BRUME_WITH_SHADOW BRUME_WITH_LIGHTING
+#endif
+#ifndef BRUME_WITH_TONE /* output = filmic */
+#define BRUME_WITH_TONE BRUME_WITH_LIGHTING
+#endif
+#ifndef BRUME_WITH_DITHER /* pixels of few bits, dithered; needs noise */
+#define BRUME_WITH_DITHER (BRUME_WITH_LIGHTING && BRUME_WITH_NOISE)
+#endif
 
 #if !(BRUME_WITH_U8 || BRUME_WITH_U8R || BRUME_WITH_U4R)
 #error "brume: no format: set BRUME_WITH_U8, BRUME_WITH_U8R or BRUME_WITH_U4R"
@@ -120,11 +154,28 @@ extern "C" {
 
 /* Rays have a mean depth when something uses it. */
 #define BRUME_WITH_DEPTH \
-    (BRUME_WITH_TAA || BRUME_WITH_SPATIAL || BRUME_WITH_RESOLUTION)
+    (BRUME_WITH_TAA || BRUME_WITH_SPATIAL || BRUME_WITH_RESOLUTION || \
+     BRUME_WITH_SKY)
 #if BRUME_WITH_TAA && !BRUME_WITH_TEMPORAL
 #error "brume: BRUME_WITH_TAA needs BRUME_WITH_TEMPORAL"
 #endif
-#if !BRUME_WITH_SEQUENCES && (BRUME_WITH_TEMPORAL || BRUME_WITH_DEPTH)
+#if !BRUME_WITH_LIGHTING && \
+    (BRUME_WITH_AMBIENT || BRUME_WITH_COLOUR || BRUME_WITH_CONE || \
+     BRUME_WITH_CACHE || BRUME_WITH_STOCHASTIC || BRUME_WITH_SKY || \
+     BRUME_WITH_TONE || BRUME_WITH_DITHER || BRUME_WITH_SHADOW)
+#error "brume: set BRUME_WITH_LIGHTING, and what of it is not wanted to 0"
+#endif
+#if BRUME_WITH_COLOUR && !BRUME_WITH_RGB
+#error "brume: BRUME_WITH_COLOUR needs BRUME_WITH_RGB"
+#endif
+#if BRUME_WITH_STOCHASTIC && !(BRUME_WITH_NEAREST && BRUME_WITH_NOISE)
+#error "brume: BRUME_WITH_STOCHASTIC needs nearest lookups and noise"
+#endif
+#if BRUME_WITH_DITHER && !BRUME_WITH_NOISE
+#error "brume: BRUME_WITH_DITHER needs BRUME_WITH_NOISE"
+#endif
+#if !BRUME_WITH_SEQUENCES && (BRUME_WITH_TEMPORAL || BRUME_WITH_TAA || \
+                              BRUME_WITH_SPATIAL || BRUME_WITH_RESOLUTION)
 #error "brume: set BRUME_WITH_SEQUENCES, and what of it is not wanted to 0"
 #endif
 
@@ -148,11 +199,14 @@ extern "C" {
 #ifndef BRUME_MAX_LOG_SAMPLES /* light samples, doubling distance, 1 .. 16 */
 #define BRUME_MAX_LOG_SAMPLES 16
 #endif
+#ifndef BRUME_MAX_OCTAVES /* of multiple scattering, 1 .. 8 */
+#define BRUME_MAX_OCTAVES 8
+#endif
 #ifndef BRUME_MAX_UNIFORM_SAMPLES /* the same, equal distance, 1 .. 4096 */
 #define BRUME_MAX_UNIFORM_SAMPLES 4096
 #endif
-/* Pixels that are marched before they are packed, 1 .. 64: 8 bytes of stack
- * each. Below 8 it costs time. */
+/* Pixels that are marched before they are packed, 1 .. 64: up to 20 bytes
+ * of stack each. Below 8 it costs time. */
 #ifndef BRUME_SPAN
 #define BRUME_SPAN 32
 #endif
@@ -165,14 +219,18 @@ extern "C" {
 #if BRUME_MAX_UNIFORM_SAMPLES < 1 || BRUME_MAX_UNIFORM_SAMPLES > 4096
 #error "brume: BRUME_MAX_UNIFORM_SAMPLES is 1 .. 4096"
 #endif
+#if BRUME_MAX_OCTAVES < 1 || BRUME_MAX_OCTAVES > 8
+#error "brume: BRUME_MAX_OCTAVES is 1 .. 8"
+#endif
 #if BRUME_SPAN < 1 || BRUME_SPAN > 64
 #error "brume: BRUME_SPAN is 1 .. 64"
 #endif
 /* These may not. */
-#define BRUME_MIN_STEP 0x00001000u /* 1/16 voxel, Q16.16 */
-#define BRUME_MAX_STEP 0x01000000u /* 256 voxels, Q16.16 */
-#define BRUME_MIN_FOV 0x00010000u  /* 1 degree, Q16.16 */
-#define BRUME_MAX_FOV 0x00a00000u  /* 160 degrees, Q16.16 */
+#define BRUME_MAX_LIGHT 0x00080000u /* brightest radiance: 8, Q16.16 */
+#define BRUME_MIN_STEP 0x00001000u  /* 1/16 voxel, Q16.16 */
+#define BRUME_MAX_STEP 0x01000000u  /* 256 voxels, Q16.16 */
+#define BRUME_MIN_FOV 0x00010000u   /* 1 degree, Q16.16 */
+#define BRUME_MAX_FOV 0x00a00000u   /* 160 degrees, Q16.16 */
 /* |eye| and |target| per axis, Q16.16: 32766 voxels. A ray that enters the
  * pool farther than 65000 voxels from the eye misses it. */
 #define BRUME_MAX_COORDINATE 0x7ffe0000
@@ -191,6 +249,9 @@ extern "C" {
 #define BRUME_SECTION_POOL 0x4c4f4f50u
 #define BRUME_SECTION_RNGE 0x45474e52u
 #define BRUME_SECTION_NAME 0x454d414eu
+#define BRUME_SECTION_MIPS 0x5350494du
+#define BRUME_SECTION_SUNC 0x434e5553u
+#define BRUME_SECTION_AMBI 0x49424d41u
 #define BRUME_CELL_EMPTY 0x80000000u /* set: bits 0..7 are a distance */
 #define BRUME_RANGE_TOP 65280u       /* largest base + top * scale */
 
@@ -277,6 +338,15 @@ struct brume_volume {
     struct brume_number density_mean; /* of the non-zero voxels */
     uint8_t format;                   /* enum brume_format */
     uint8_t side;                     /* 8, or 9 with an apron */
+#if BRUME_WITH_CONE
+    const uint8_t *mips; /* or NULL */
+#endif
+#if BRUME_WITH_CACHE
+    const uint8_t *sun_cache; /* section SUNC, or NULL */
+#endif
+#if BRUME_WITH_AMBIENT
+    const uint8_t *sky; /* visibility of the sky, one per cell; or NULL */
+#endif
 };
 
 enum brume_open_flags {
@@ -298,8 +368,21 @@ uint32_t brume_asset_crc(const void *asset, uint32_t size);
 
 /// Scene ///
 
-enum brume_filter { BRUME_NEAREST = 0, BRUME_TRILINEAR = 1 };
-enum brume_light { BRUME_LOG = 0, BRUME_UNIFORM = 1, BRUME_NO_LIGHT = 2 };
+enum brume_filter {
+    BRUME_NEAREST = 0,
+    BRUME_TRILINEAR = 1,
+    /* one of the eight voxels of trilinear, at random by their weights */
+    BRUME_STOCHASTIC = 2
+};
+enum brume_light {
+    BRUME_LOG = 0,
+    BRUME_UNIFORM = 1,
+    BRUME_NO_LIGHT = 2,
+    /* As log, but each sample sees its segment. Needs the asset's MIPS, which
+     * max_density does not clamp. */
+    BRUME_CONE = 3,
+    BRUME_CACHE = 4 /* lighting->cache */
+};
 enum brume_jitter { /* bits: what is jittered */
                     BRUME_JITTER_NONE = 0,
                     BRUME_JITTER_PRIMARY = 1,
@@ -332,7 +415,12 @@ struct brume_noise_table {
     uint8_t bits; /* 4 or 8 per value */
 };
 
-enum brume_output { BRUME_LINEAR = 0, BRUME_SRGB = 1 };
+enum brume_output {
+    BRUME_LINEAR = 0,
+    BRUME_SRGB = 1,
+    /* Narkowicz, "ACES Filmic Tone Mapping Curve", 2016, then sRGB */
+    BRUME_FILMIC = 2
+};
 
 /* What frames before this one add; docs/temporal.md has the definitions. */
 enum brume_temporal {
@@ -375,6 +463,140 @@ enum brume_upsample {
  * folds it, so firmware stays free of floating point. */
 #define BRUME_Q32(x) ((uint64_t)((x)*4294967296.0))
 #define BRUME_Q16(x) ((int32_t)((x)*65536.0 + ((x) < 0 ? -0.5 : 0.5)))
+
+/// Lighting ///
+
+/* What a cloud's light is made of beyond one white sun that is scattered once,
+ * alike in all directions; docs/light.md has the definitions. A scene whose
+ * `lighting` is NULL has none of it. */
+
+/* Phase functions, relative to isotropic: 4 pi p, so their mean over all
+ * directions is 1. */
+enum brume_phase_kind {
+    /* weight * Draine + (1 - weight) * Henyey-Greenstein: with weight 0 and
+     * g 0 isotropic; Jendersie and d'Eon's droplets */
+    BRUME_PHASE_MIX = 0,
+    BRUME_PHASE_SCHLICK = 1 /* of g; k = 1.55 g - 0.55 g^3 */
+};
+struct brume_phase_model {
+    uint8_t kind;          /* enum brume_phase_kind */
+    int32_t g;             /* Q2.30, -0.999 .. 0.999 */
+    int32_t draine_g;      /* Q2.30, the same */
+    uint32_t draine_alpha; /* Q16.16, 0 .. 1024 */
+    uint32_t weight;       /* Q0.16 */
+};
+
+/* A phase function over the angle, finest at its ends: by w, the smaller of 1 -
+ * cos and 1 + cos, which has 16 steps from 0 to 2^-20, then 16 in each
+ * octave up to 1, in the last one 32. Entry n <= 352 is that many steps from
+ * cos = 1, entry 704 - n as many from cos = -1. Each is 1024 log2(4 pi p) +
+ * 16384. */
+#define BRUME_PHASE_CODES 705
+struct brume_phase {
+    uint16_t code[BRUME_PHASE_CODES];
+};
+
+/* Makes the table of octave `octave` of a model: g, draine_g and alpha are
+ * multiplied by octave_c^octave (Q0.16). BRUME_ERR_SCENE when the model is out
+ * of range. Tables may as well be made beforehand and kept in flash. */
+int brume_phase_build(struct brume_phase *out,
+                      const struct brume_phase_model *model, uint32_t octave,
+                      uint32_t octave_c);
+
+/* 4 pi p at 1 - cos = u, Q2.30, 0 .. 2. Within 0.3 % of
+ * all models whose draine_alpha is at most 40; a pure Draine of 250 is off by
+ * 1.5 %, of 1000 by 5 %, at a right angle, where its lobe has a cusp. */
+struct brume_number brume_phase_value(const struct brume_phase *phase,
+                                      uint32_t u);
+
+enum brume_ambient {
+    BRUME_AMBIENT_NONE = 0,
+    BRUME_AMBIENT_CONSTANT = 1, /* ambient_colour[0] */
+    /* from [1] at the lower end of the volume's box along zenith to [0] at its
+     * upper end */
+    BRUME_AMBIENT_GRADIENT = 2,
+    /* six colours by direction: +x -x +y -y +z -z. Without directions
+     * (visibility sampled) their mean. */
+    BRUME_AMBIENT_CUBE = 3
+};
+enum brume_visibility { /* how much of the sky a sample sees */
+                        BRUME_OPEN_SKY = 0, /* all */
+                        /* what one ray lets through, in a direction of its own
+                         * for each sample */
+                        BRUME_SKY_SAMPLED = 1,
+                        BRUME_SKY_BAKED = 2 /* the asset's AMBI section */
+};
+
+/* Directions of the upper hemisphere, +z its pole, as noise: 2^width_log2 x
+ * 2^height_log2 x 2^frames_log2 triples x y z of Q1.7. Sides and frames as
+ * struct brume_noise_table's. */
+struct brume_direction_table {
+    const int8_t *values;
+    uint8_t width_log2, height_log2, frames_log2;
+};
+
+/* Optical depth towards the sun at the points of a grid, 2^spacing_log2 voxels
+ * apart, the first one half of that from the pool's corner: `size` points, x
+ * fastest. The depth of code q is unit * (2^(q/24) - 1) per unit of
+ * light_density_scale. Between `from` and `to` it goes with blend, Q0.16. */
+struct brume_cache {
+    const uint8_t *from, *to;
+    uint16_t size[3];
+    uint8_t spacing_log2; /* 1, 2 or 3 */
+    uint32_t blend;       /* 0 .. 65536 */
+    struct brume_number unit;
+};
+
+struct brume_lighting {
+    /* Multiple scattering (Wrenninge et al., "Oz: The Great and Volumetric",
+     * 2013): the sum over i < octaves of b^i phase[i] exp(-a^i tau). */
+    const struct brume_phase *phase; /* one per octave; NULL: isotropic */
+    uint32_t octaves;                /* 0 (as 1) .. BRUME_MAX_OCTAVES */
+    uint32_t octave_a, octave_b;     /* Q0.16 */
+    uint32_t sun_colour[3];          /* Q16.16, 0 .. 16; 1: as without */
+    uint32_t exposure;               /* Q16.16, 1/256 .. 16; 0: 1 */
+
+    uint8_t ambient;            /* enum brume_ambient */
+    uint8_t visibility;         /* enum brume_visibility */
+    uint8_t visibility_samples; /* doubling distance, 0 .. 16 */
+    uint32_t visibility_step;   /* Q16.16 voxels, as light_step */
+    const struct brume_direction_table *directions; /* of BRUME_SKY_SAMPLED */
+    uint32_t ambient_colour[6][3];                  /* Q16.16, 0 .. 16 */
+    int32_t zenith[3]; /* up in the world, any length; zero: +Y */
+
+    const struct brume_cache *cache; /* of BRUME_CACHE */
+
+    /* Behind the volume, in place of the scene's background: from the horizon
+     * to the zenith the colour is zenith + (horizon - zenith) (1 - s)^4, s the
+     * sine of the elevation; below it is the ground's. */
+    bool sky;
+    uint32_t sky_zenith[3], sky_horizon[3], sky_ground[3]; /* Q16.16, 0 .. 16 */
+    uint32_t sun_disc[3]; /* the sun's, added; Q16.16, 0 .. 16 */
+    uint32_t sun_size;    /* 1 - cos of its radius, Q2.30; 0: none */
+    uint32_t haze; /* Q16.16: distance in voxels, >= 1, at which 1/e of the
+                    * volume is left before the background; 0: none */
+    bool dither;   /* pixels of fewer than 8 bits */
+};
+
+#if BRUME_WITH_CACHE
+/* The cache that was baked into the volume, its section SUNC, for the sun of
+ * that bake. BRUME_ERR_SECTION when there is none. */
+int brume_cache_baked(struct brume_cache *out,
+                      const struct brume_volume *volume);
+
+/* A cache that is made on the device. Bytes of its codes, 0 when they are too
+ * many; then its head for codes at `codes`; then its codes, any rows of points
+ * (row = y + z * size[1], row < size[1] * size[2]) at a time, with the light of
+ * `frame`, which has lighting and another light than cache, best uniform.
+ *
+ * While the sun moves: codes of three suns, one being made, and blend going
+ * from the older to the newer of the two others meanwhile; so nothing pops. */
+size_t brume_cache_bytes(const struct brume_volume *volume,
+                         unsigned spacing_log2);
+int brume_cache_begin(struct brume_cache *cache,
+                      const struct brume_volume *volume, unsigned spacing_log2,
+                      const uint8_t *codes);
+#endif
 
 /* What to draw. Fill with brume_scene_default, then change what you like. */
 struct brume_scene {
@@ -424,6 +646,10 @@ struct brume_scene {
     /* Edge-aware spatial filters: weights fall by e for each 1/edge_falloff
      * octave of depth. Q16.16, 0 .. 1024; 0: plain. */
     uint32_t edge_falloff;
+
+#if BRUME_WITH_LIGHTING
+    const struct brume_lighting *lighting; /* or NULL */
+#endif
 };
 
 /* A scene that shows any volume: 640x480, camera on the box of its non-zero
@@ -464,6 +690,61 @@ struct brume_view {
     struct brume_number focal;         /* pixels of the image at distance 1 */
 };
 
+/* Light sums to optical depth: tau * 2^13 is the high word of
+ * (sum << shift) * m; sums above the limit are black. */
+struct brume_tau {
+    uint32_t m, shift, limit;
+};
+
+#if BRUME_WITH_LIGHTING
+/* What a frame makes of its lighting. */
+struct brume_lit {
+    const struct brume_lighting *lighting; /* or NULL */
+    bool on;                               /* is it marched by brume_lit.c? */
+    uint8_t light_log2; /* samples keep light / 2^light_log2 */
+    uint8_t light;      /* enum brume_light */
+    bool stochastic;
+    int8_t cone_level; /* of the mip for a segment of a light step */
+    uint32_t octaves;  /* >= 1 */
+    struct brume_tau tau[BRUME_MAX_OCTAVES];
+    uint32_t weight[BRUME_MAX_OCTAVES]; /* b^i, Q0.32, all ones for 1 */
+    uint32_t sun[3];  /* Q16.16: albedo, colour of the sun, exposure */
+    uint8_t headroom; /* of a sum of octaves: it is Q29 - headroom */
+#if BRUME_WITH_COLOUR
+    bool colour; /* three channels, else all is in the first */
+#endif
+#if BRUME_WITH_AMBIENT
+    uint8_t ambient, visibility;
+    uint32_t sky_samples;
+    int32_t sky_axis[3][3]; /* of directions, times their step; Q16.16 */
+    struct brume_tau sky_tau;
+    uint32_t ambient_colour[6][3]; /* as sun */
+    /* Along zenith, Q17.14: the low end of the box, its height; and 1 over
+     * that. */
+    int32_t low;
+    uint32_t height;
+    struct brume_number per_height;
+#endif
+#if BRUME_WITH_CACHE
+    struct brume_number sun_unit; /* depth of 1 of a sum of light, per unit of
+                                   * light_density_scale */
+    struct brume_cache cache;
+#endif
+#if BRUME_WITH_AMBIENT || BRUME_WITH_SKY
+    int32_t zenith[3]; /* Q2.30, unit */
+#endif
+#if BRUME_WITH_SKY
+    bool sky;
+    uint32_t haze; /* Q0.32: 2^16 / distance; 0: none */
+    /* zenith, horizon, ground, disc; Q16.16, exposure applied */
+    uint32_t sky_colour[4][3];
+#endif
+#if BRUME_WITH_DITHER
+    bool dither;
+#endif
+};
+#endif
+
 /* All that is computed once a frame. For users: grid and lattice. */
 struct brume_frame {
     const struct brume_volume *volume;
@@ -483,8 +764,7 @@ struct brume_frame {
     uint32_t leap_margin;         /* Q16.16, see leap in brume_march.c */
     uint32_t min_density;         /* in codes of the kernel */
     uint32_t max_density;         /* in 16-bit codes */
-    uint32_t tau_m, tau_shift;    /* light sum to optical depth */
-    uint32_t tau_limit;           /* larger sums are black */
+    struct brume_tau tau;         /* of light sums */
     uint32_t min_transmittance;   /* Q1.31 */
     uint32_t albedo;              /* Q0.16 */
     uint32_t background[3];       /* Q0.16 */
@@ -522,6 +802,9 @@ struct brume_frame {
     uint32_t same;  /* changes when the scene does, but for its frame */
     struct brume_view view;
 #endif
+#if BRUME_WITH_LIGHTING
+    struct brume_lit lit;
+#endif
 };
 
 /* Checks the scene, and prepares *frame to render it. The volume must outlive
@@ -533,6 +816,15 @@ int brume_begin_frame(struct brume_frame *frame,
                       const struct brume_volume *volume,
                       const struct brume_scene *scene);
 
+#if BRUME_WITH_CACHE
+/* Codes of `rows` rows of a cache, from row `row` on; see struct brume_cache.
+ * BRUME_ERR_RECT beyond the last one, BRUME_ERR_SIZE for a cache of another
+ * volume, BRUME_ERR_SCENE for a frame that has no light to make it with. */
+int brume_cache_rows(const struct brume_cache *cache, uint8_t *codes,
+                     const struct brume_frame *frame, uint32_t row,
+                     uint32_t rows);
+#endif
+
 /// Pixels ///
 
 enum brume_pixel_format {
@@ -542,16 +834,29 @@ enum brume_pixel_format {
     BRUME_RGB565_SWAPPED = 3, /* the same, bytes swapped (SPI panels) */
     BRUME_XRGB8888 = 4,       /* 4 bytes, native word 0x00rrggbb */
     BRUME_L16 = 5,            /* 2 bytes, native word: grey, for measuring */
-    BRUME_RGB161616 = 6       /* 3 native words of 16 bits */
+    BRUME_RGB161616 = 6,      /* 3 native words of 16 bits */
+    /* With BRUME_WITH_DITHER. Pixel i of a row is in the highest bits of what
+     * is left of byte i * bits / 8; rectangles of L4, L2 and L1 begin at a
+     * multiple of 8 pixels. */
+    BRUME_RGB332 = 7, /* 1 byte rrrgggbb */
+    BRUME_L4 = 8,     /* 4 bits: grey, two pixels to a byte */
+    BRUME_L2 = 9,     /* 2 bits */
+    BRUME_L1 = 10,    /* 1 bit */
+    /* Light without a background, and 255 (1 - transmittance): dst = rgb +
+     * dst * (255 - a) / 255. 4 bytes: red, green, blue, alpha */
+    BRUME_RGBA8888 = 11
 };
 
-/* Bytes per pixel of a format, 0 when there is no such format. */
+/* Bytes per pixel of a format, 0 when there is no such format or it has less
+ * than one; and bytes of a row of w pixels. */
 unsigned brume_pixel_bytes(int pixel_format);
+size_t brume_row_bytes(int pixel_format, unsigned w);
 
 /* Renders the w x h pixels at (x, y) of the frame into dst, whose first byte
  * is pixel (x, y) and whose rows are `stride` bytes apart. dst must be aligned
  * for the format's word. Any cutting of a frame into rectangles gives the same
- * pixels. L8 and L16 take the background's red. Returns BRUME_OK (also for
+ * pixels. Grey formats take red, or the luma of coloured
+ * light. Returns BRUME_OK (also for
  * empty rectangles), BRUME_ERR_NULL, BRUME_ERR_RECT, BRUME_ERR_FEATURE for a
  * pixel format that was compiled out, or BRUME_ERR_STATE for a scene that takes
  * the passes of "Sequences"; then dst is untouched. */
@@ -561,7 +866,8 @@ int brume_render_rect(const struct brume_frame *frame, unsigned x, unsigned y,
 
 /* What a ray brings back, before the background. */
 struct brume_radiance {
-    uint32_t light;         /* Q0.16, albedo applied, 1.0 = the sun's */
+    uint32_t light; /* Q16.16, albedo applied, 1.0 = the sun's; at most 1,
+                     * with lighting BRUME_MAX_LIGHT */
     uint32_t transmittance; /* Q0.16 */
 #if BRUME_WITH_DEPTH
     /* Mean distance, weighted by the loss of transmittance, on a logarithmic
@@ -569,18 +875,23 @@ struct brume_radiance {
      * there. 0 when the scene has no use for it. */
     uint32_t depth;
 #endif
+#if BRUME_WITH_COLOUR
+    /* Like light, which is then red; 0 when the scene's light has no colour. */
+    uint32_t green, blue;
+#endif
 };
 
 /* The two halves of brume_render_rect, for those who do something between: the
  * w x h rays at (x, y) of the frame's lattice into `out`, rows `stride` rays
- * apart; and rays over the background into pixels. Errors as there. */
+ * apart; and rays over the background into the w x h pixels at (x, y), where
+ * that tells. Errors as there. */
 int brume_march_rect(const struct brume_frame *frame, unsigned x, unsigned y,
                      unsigned w, unsigned h, struct brume_radiance *out,
                      size_t stride);
 int brume_pack_rect(const struct brume_frame *frame,
                     const struct brume_radiance *in, size_t in_stride,
-                    unsigned w, unsigned h, int pixel_format, void *dst,
-                    size_t stride);
+                    unsigned x, unsigned y, unsigned w, unsigned h,
+                    int pixel_format, void *dst, size_t stride);
 
 /// Sequences ///
 
@@ -625,10 +936,10 @@ struct brume_state {
  *
  *   per ray of the grid    none 0, ema BRUME_EMA_BYTES, window
  *                          BRUME_WINDOW_BYTES, taa BRUME_TAA_BYTES
- *   per ray of the lattice none and taa 6, others 0
+ *   per ray of the lattice none and taa BRUME_SAMPLE_BYTES, others 0
  *
- * `bits` is history_bits; `depth` is 1 when edge_falloff or
- * BRUME_UPSAMPLE_AWARE ask for it, else 0. */
+ * The same with _RGB when light has colour. `bits` is history_bits; `depth` is
+ * 1 when edge_falloff or BRUME_UPSAMPLE_AWARE ask for it, else 0. */
 #define BRUME_RAYS(width, height, resolution) \
     ((uint32_t)(((width) + (1u << (resolution)) - 1u) >> (resolution)) * \
      (((height) + (1u << (resolution)) - 1u) >> (resolution)))
@@ -637,6 +948,11 @@ struct brume_state {
     ((bits) / 4u * (window) + (bits) / 2u + 2u * (depth))
 #define BRUME_TAA_BYTES(bits) ((bits) / 2u + 4u)
 #define BRUME_SAMPLE_BYTES 6u
+#define BRUME_EMA_BYTES_RGB(bits, depth) ((bits) / 2u + 2u * (depth))
+#define BRUME_WINDOW_BYTES_RGB(bits, window, depth) \
+    ((bits) / 2u * (window) + (bits) + 2u * (depth))
+#define BRUME_TAA_BYTES_RGB(bits) ((bits) + 4u)
+#define BRUME_SAMPLE_BYTES_RGB 12u
 #define BRUME_STATE_BYTES(grid, grid_bytes, lattice, lattice_bytes) \
     (sizeof(struct brume_state) + 32u + (uint32_t)(grid) * (grid_bytes) + \
      (uint32_t)(lattice) * (lattice_bytes))
@@ -648,7 +964,8 @@ size_t brume_state_bytes(const struct brume_scene *scene);
 int brume_state_init(struct brume_state *state, size_t size);
 
 /* Once a frame, before its passes. History is dropped when frame.cut says so,
- * and when size, resolution, update or kind of history change. Returns
+ * and when size, resolution, update or kind of history change, light gets or
+ * loses colour, or output becomes BRUME_FILMIC or another. Returns
  * BRUME_ERR_STATE when the memory is too small: then it is as before. */
 int brume_begin_state(struct brume_state *state,
                       const struct brume_frame *frame);
@@ -680,11 +997,84 @@ size_t brume_work_bytes(const struct brume_frame *frame, unsigned w);
 
 /* At most that many, known when compiling: with a kernel of so many taps (1
  * for none; 13 for bilateral15, whose outermost two weigh less than half of
- * 2^-16 and are left out), and with any. */
+ * 2^-16 and are left out), and with any; and when light has colour. */
 #define BRUME_WORK_BYTES_OF(w, taps) \
     (BRUME_SPAN * sizeof(struct brume_radiance) + \
-     6u * ((taps) + 2u) * ((size_t)(w) + (taps) + 1u))
+     BRUME_SAMPLE_BYTES * ((taps) + 2u) * ((size_t)(w) + (taps) + 1u))
 #define BRUME_WORK_BYTES(w) BRUME_WORK_BYTES_OF(w, 13u)
+#define BRUME_WORK_BYTES_RGB(w, taps) \
+    (BRUME_SPAN * sizeof(struct brume_radiance) + \
+     BRUME_SAMPLE_BYTES_RGB * ((taps) + 2u) * ((size_t)(w) + (taps) + 1u))
+
+/// Shadow ///
+
+#if BRUME_WITH_SHADOW
+/* The shadow that the volume throws on the user's ground, sea or sprites: how
+ * much of the sun comes through to the texels of a map that lies anywhere in
+ * pool space, flat or over a height field. Light shafts below the volume use
+ * the same map: a point in the air is shaded by the texel on its way from the
+ * sun. docs/light.md has the definition.
+ *
+ * Texel (x, y) is at
+ *
+ *     origin + (x + 1/2) / width * across + (y + 1/2) / height * down
+ *            + heights[y * heights_stride + x] / 65536 * rise
+ *
+ * whichever way the edges point; all corners within BRUME_MAX_COORDINATE. */
+struct brume_shadow_map {
+    uint16_t width, height; /* texels, 1 .. BRUME_MAX_SIZE */
+    /* Q16.16: a corner, the edges from there, and the way up to 65536. */
+    int32_t origin[3], across[3], down[3], rise[3];
+    const uint16_t *heights; /* or NULL */
+    size_t heights_stride;   /* from row to row, in values */
+    /* Q16.16 voxels, as brume_scene.step; at most 65535 samples may lie on a
+     * ray through the pool. */
+    uint32_t step;
+};
+
+/* Distances from a texel towards the sun, as brume_radiance.depth: where
+ * density begins, and its mean. 65535: there is none. */
+struct brume_shadow_depth {
+    uint16_t front, mean;
+};
+
+/* All that is computed once. No user-visible fields. */
+struct brume_shadow {
+    struct brume_frame frame;
+    struct brume_shadow_map map;
+    struct brume_number pace[3]; /* time per distance along an axis */
+    uint32_t per_texel[2];
+    uint32_t black; /* sums above are 0 in 8 bits */
+    uint8_t shift[2];
+};
+
+/* Of the scene, its sun, light_density_scale, max_density, filter (stochastic
+ * as trilinear) and skip are used. The volume and the heights must outlive
+ * *shadow. Returns BRUME_OK, BRUME_ERR_SCENE for a map out of reach,
+ * BRUME_ERR_STEP for too many samples, or what brume_begin_frame does; then
+ * *shadow must not be used. */
+int brume_shadow_begin(struct brume_shadow *shadow,
+                       const struct brume_volume *volume,
+                       const struct brume_scene *scene,
+                       const struct brume_shadow_map *map);
+
+/* The w x h texels at (x, y): 255 times the sun's transmittance, rounded, rows
+ * `stride` bytes apart; and, where `depth` is not NULL, depths, rows
+ * `depth_stride` of them apart, which takes longer where it is dark. Any
+ * cutting of a map into rectangles gives the same bytes. BRUME_ERR_NULL and
+ * BRUME_ERR_RECT as in brume_render_rect. */
+int brume_shadow_rect(const struct brume_shadow *shadow, unsigned x, unsigned y,
+                      unsigned w, unsigned h, uint8_t *transmittance,
+                      size_t stride, struct brume_shadow_depth *depth,
+                      size_t depth_stride);
+
+/* What comes through to a point in or above the volume, `distance` (Q16.16)
+ * from a texel towards the sun: Q0.16, from the texel's own values, as if
+ * density were the same from front to 2 mean - front. */
+uint32_t brume_shadow_at(uint8_t transmittance,
+                         const struct brume_shadow_depth *depth,
+                         uint32_t distance);
+#endif
 
 #ifdef __cplusplus
 }

@@ -171,6 +171,118 @@ static int bind_sections(struct brume_volume *v, const uint8_t *p)
     return BRUME_OK;
 }
 
+/// Sections for light ///
+
+#define MIP_BYTES 72u      /* levels 1 and 2 of a brick */
+#define SUN_HEAD_BYTES 32u /* spacing, direction, unit */
+#define SUN_OFF_UNIT 16u
+#define SKY_HEAD_BYTES 16u /* extinction */
+
+#if BRUME_WITH_CONE
+/* Means: 72 bytes for each brick, then a byte for each cell, and for each cube
+ * of cells of every level up to the one that is a single cube. */
+static int bind_mips(struct brume_volume *v, const uint8_t *p)
+{
+    uint32_t rest, offset = find_section(p, BRUME_SECTION_MIPS, &rest);
+    uint32_t x = v->cell_count[0], y = v->cell_count[1], z = v->cell_count[2];
+    if (offset == 0)
+        return BRUME_OK;
+    if (v->bricks > rest / MIP_BYTES)
+        return BRUME_ERR_SECTION;
+    rest -= v->bricks * MIP_BYTES;
+    for (;;) {
+        uint32_t cubes = x * y * z; /* < 2^30: CELL has a word for each */
+        if (cubes > rest)
+            return BRUME_ERR_SECTION;
+        rest -= cubes;
+        if (cubes == 1)
+            break;
+        x = (x + 1) >> 1;
+        y = (y + 1) >> 1;
+        z = (z + 1) >> 1;
+    }
+    v->mips = p + offset;
+    return rest == 0 ? BRUME_OK : BRUME_ERR_SECTION;
+}
+#endif
+
+#if BRUME_WITH_CACHE
+/* Depths towards a sun: a head, and a byte for each point. */
+static int bind_sun_cache(struct brume_volume *v, const uint8_t *p)
+{
+    uint32_t bytes, offset = find_section(p, BRUME_SECTION_SUNC, &bytes);
+    uint32_t plane = (uint32_t)v->cell_count[0] * v->cell_count[1];
+    if (offset == 0)
+        return BRUME_OK;
+    p += offset;
+    if (bytes < SUN_HEAD_BYTES || p[0] < 1 || p[0] > 3 ||
+        (get32(p) & ~0xffu) != 0 || get32(p + 24) != 0 || get32(p + 28) != 0 ||
+        !number_is_good(get_number(p + SUN_OFF_UNIT)))
+        return BRUME_ERR_SECTION;
+    bytes -= SUN_HEAD_BYTES;
+    uint32_t per_cell = 512u >> 3 * p[0];
+    if (bytes % per_cell != 0 ||
+        !is_product(plane, v->cell_count[2], bytes / per_cell))
+        return BRUME_ERR_SECTION;
+    v->sun_cache = p;
+    return BRUME_OK;
+}
+
+int brume_cache_baked(struct brume_cache *out,
+                      const struct brume_volume *volume)
+{
+    if (out == NULL || volume == NULL)
+        return BRUME_ERR_NULL;
+    const uint8_t *p = volume->sun_cache;
+    if (p == NULL)
+        return BRUME_ERR_SECTION;
+    out->from = out->to = p + SUN_HEAD_BYTES;
+    out->spacing_log2 = p[0];
+    out->blend = 0;
+    out->unit = get_number(p + SUN_OFF_UNIT);
+    for (int i = 0; i < 3; i++)
+        out->size[i] = (uint16_t)(8u * volume->cell_count[i] >> p[0]);
+    return BRUME_OK;
+}
+#endif
+
+#if BRUME_WITH_AMBIENT
+/* What cells see of the sky: a head, and a byte for each. */
+static int bind_sky(struct brume_volume *v, const uint8_t *p)
+{
+    uint32_t bytes, offset = find_section(p, BRUME_SECTION_AMBI, &bytes);
+    uint32_t plane = (uint32_t)v->cell_count[0] * v->cell_count[1];
+    if (offset == 0)
+        return BRUME_OK;
+    p += offset;
+    if (bytes < SKY_HEAD_BYTES || !number_is_good(get_number(p)) ||
+        get32(p + 8) != 0 || get32(p + 12) != 0 ||
+        !is_product(plane, v->cell_count[2], bytes - SKY_HEAD_BYTES))
+        return BRUME_ERR_SECTION;
+    v->sky = p + SKY_HEAD_BYTES;
+    return BRUME_OK;
+}
+#endif
+
+static int bind_light(struct brume_volume *v, const uint8_t *p)
+{
+    int err = BRUME_OK;
+    (void)v;
+    (void)p;
+#if BRUME_WITH_CONE
+    err = bind_mips(v, p);
+#endif
+#if BRUME_WITH_CACHE
+    if (!err)
+        err = bind_sun_cache(v, p);
+#endif
+#if BRUME_WITH_AMBIENT
+    if (!err)
+        err = bind_sky(v, p);
+#endif
+    return err;
+}
+
 /// Contents ///
 
 static int check_ranges(const struct brume_volume *v)
@@ -263,6 +375,8 @@ static int open_checked(struct brume_volume *v, const uint8_t *p, size_t size,
         err = check_sections(p, v->size);
     if (!err)
         err = bind_sections(v, p);
+    if (!err)
+        err = bind_light(v, p);
     if (!err)
         err = check_ranges(v);
     if (!err)

@@ -195,6 +195,10 @@ int brume_camera_begin(struct brume_frame *frame,
         right_of(right, ahead, k_y);
     project(frame, ahead, right, scene->fov);
     int32_t bias = scene->filter == BRUME_TRILINEAR ? 0x80 : 0x8000;
+#if BRUME_WITH_STOCHASTIC
+    if (scene->filter == BRUME_STOCHASTIC) /* lookups are moved by 0 .. 1 */
+        bias = 0;
+#endif
     for (int i = 0; i < 3; i++) {
         frame->eye[i] = scene->eye[i] + bias;
 #if BRUME_WITH_TAA
@@ -223,6 +227,23 @@ static void grid_of(const struct brume_frame *f, uint32_t *x, uint32_t *y)
 #endif
 }
 
+/* At (u, v) half pixels from the middle. */
+static void direction_of(int32_t out[3], const struct brume_frame *f, int32_t u,
+                         int32_t v)
+{
+    for (int i = 0; i < 3; i++)
+        out[i] = f->ahead[i] + u * f->per_x[i] + v * f->per_y[i];
+}
+
+#if BRUME_WITH_SKY
+void brume_pixel_direction(const struct brume_frame *frame, uint32_t x,
+                           uint32_t y, int32_t out[3])
+{
+    direction_of(out, frame, (int32_t)(2u * x + 1u) - (int32_t)frame->width,
+                 (int32_t)frame->height - (int32_t)(2u * y + 1u));
+}
+#endif
+
 /* Exact: linear in x and y. */
 void brume_grid_direction(const struct brume_frame *frame, uint32_t x,
                           uint32_t y, int32_t out[3])
@@ -231,8 +252,7 @@ void brume_grid_direction(const struct brume_frame *frame, uint32_t x,
     uint32_t r = brume_resolution_of(f);
     int32_t u = (int32_t)((2u * x + 1u) << r) - (int32_t)f->width;
     int32_t v = (int32_t)f->height - (int32_t)((2u * y + 1u) << r);
-    for (int i = 0; i < 3; i++)
-        out[i] = f->ahead[i] + u * f->per_x[i] + v * f->per_y[i];
+    direction_of(out, f, u, v);
 }
 
 #if BRUME_WITH_TEMPORAL
@@ -405,7 +425,7 @@ void brume_light_begin(struct brume_light_ray *light,
     /* A doubled distance of 32768 voxels on any axis is out of the pool,
      * and would not fit the word. */
     if (!uniform)
-        while (n > 0 && most >> (32 - n) != 0)
+        while (n > 0 && most >> (31 - brume_doubling(f, n - 1)) != 0)
             n--;
     light->samples = n;
 }
@@ -413,14 +433,9 @@ void brume_light_begin(struct brume_light_ray *light,
 static uint32_t jitter_of(const struct brume_frame *f, uint32_t x, uint32_t y,
                           uint32_t channel)
 {
-#if BRUME_WITH_TEMPORAL
-    uint32_t frame = f->noise_frame;
-#else
-    uint32_t frame = f->frame;
-#endif
     return BRUME_WITH_NOISE && (f->jitter >> channel & 1u)
-               ? brume_noise_value(f->noise, &f->noise_table, x, y, frame,
-                                   channel)
+               ? brume_noise_value(f->noise, &f->noise_table, x, y,
+                                   brume_noise_frame(f), channel)
                : 0;
 }
 
@@ -475,6 +490,38 @@ bool brume_rays_miss(const struct brume_frame *frame, uint32_t x, uint32_t y,
     return false;
 }
 
+#if BRUME_WITH_STOCHASTIC
+/* Axis i of where the ray's first lookup is moved to. Noises whose channels
+ * keep their distance from frame to frame get one that each axis moves by. */
+static uint32_t lookup_noise(const struct brume_frame *f, uint32_t x,
+                             uint32_t y, uint32_t i)
+{
+    uint32_t frame = brume_noise_frame(f);
+    uint32_t value =
+        brume_noise_value(f->noise, &f->noise_table, x, y, frame, 4u + i);
+    bool apart = f->noise == BRUME_NOISE_WHITE ||
+                 f->noise == BRUME_NOISE_TABLE ||
+                 f->noise == BRUME_NOISE_TABLE_R2;
+    return apart ? value : value + brume_r3(frame, i);
+}
+#endif
+
+#if BRUME_WITH_LIGHTING
+static void set_lit(struct brume_ray *ray, const struct brume_frame *f,
+                    const int32_t unit[3], uint32_t x, uint32_t y)
+{
+    ray->x = x;
+    ray->y = y;
+    for (uint32_t i = 0; i < 3; i++) {
+        ray->unit[i] = unit[i];
+#if BRUME_WITH_STOCHASTIC
+        if (f->lit.stochastic)
+            ray->noise[i] = lookup_noise(f, x, y, i);
+#endif
+    }
+}
+#endif
+
 bool brume_ray_begin(struct brume_ray *ray, const struct brume_frame *frame,
                      uint32_t x, uint32_t y)
 {
@@ -500,5 +547,9 @@ bool brume_ray_begin(struct brume_ray *ray, const struct brume_frame *frame,
     ray->light = f->light;
     if (BRUME_WITH_NOISE && (f->jitter & BRUME_JITTER_LIGHT))
         brume_light_begin(&ray->light, f, jitter_of(f, x, y, 1));
+#if BRUME_WITH_LIGHTING
+    if (f->lit.on)
+        set_lit(ray, f, unit, x, y);
+#endif
     return true;
 }

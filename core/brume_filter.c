@@ -94,20 +94,22 @@ static void filter_plain(const struct kernel *k,
  * (tests/test_filter_edges.c). */
 #define SKY_FALLOFF 8u
 
-/* Weighted sums so far, and the middle of the kernel. */
+/* Weighted sums so far, by layer. */
 struct sums {
-    uint32_t light, transmittance, weight;
+    uint32_t light[BRUME_LAYERS], transmittance[BRUME_LAYERS], weight;
 };
 
 BRUME_INLINE void add_like(struct sums *s, const struct brume_sample *a,
                            const struct brume_sample *middle, uint32_t w,
-                           uint32_t falloff)
+                           uint32_t falloff, uint32_t layers, uint32_t apart)
 {
     uint32_t like = brume_likeness(a, middle->depth, middle->transmittance,
                                    falloff, SKY_FALLOFF);
     w = (w * like + 0x4000u) >> 15;
-    s->light += w * a->light;
-    s->transmittance += w * a->transmittance;
+    for (uint32_t l = 0; l < layers; l++) {
+        s->light[l] += w * a[l * apart].light;
+        s->transmittance[l] += w * a[l * apart].transmittance;
+    }
     s->weight += w;
 }
 
@@ -116,22 +118,32 @@ BRUME_INLINE void add_like(struct sums *s, const struct brume_sample *a,
  * An e_k is wrong by 2^-13 of itself and 2^-14, a weight by 1/2 after that: of
  * the sum of weights, < 2^-10 in all. So is the mean, of the range of what is
  * averaged. */
-static void filter_edge(const struct kernel *k, uint32_t falloff,
-                        const struct brume_sample *const *tap,
-                        struct brume_sample *out, uint32_t n)
+BRUME_INLINE void filter_edge(const struct kernel *k, uint32_t falloff,
+                              const struct brume_sample *const *tap,
+                              struct brume_sample *out, uint32_t n,
+                              uint32_t layers, uint32_t apart)
 {
     const uint32_t radius = k->radius;
     for (uint32_t i = 0; i < n; i++) {
         const struct brume_sample middle = tap[radius][i];
         uint32_t w = k->weight[radius];
-        struct sums s = {w * middle.light, w * middle.transmittance, w};
+        struct sums s = {{w * middle.light}, {w * middle.transmittance}, w};
+        if (layers > 1) {
+            const struct brume_sample *more = tap[radius] + i + apart;
+            s.light[layers - 1u] = w * more->light;
+            s.transmittance[layers - 1u] = w * more->transmittance;
+        }
         for (uint32_t j = 0; j < radius; j++) {
             w = k->weight[j];
-            add_like(&s, tap[j] + i, &middle, w, falloff);
-            add_like(&s, tap[2 * radius - j] + i, &middle, w, falloff);
+            add_like(&s, tap[j] + i, &middle, w, falloff, layers, apart);
+            add_like(&s, tap[2 * radius - j] + i, &middle, w, falloff, layers,
+                     apart);
         }
-        out[i].light = brume_mean_of(s.light, s.weight);
-        out[i].transmittance = brume_mean_of(s.transmittance, s.weight);
+        for (uint32_t l = 0; l < layers; l++) {
+            struct brume_sample *to = out + i + l * apart;
+            to->light = brume_mean_of(s.light[l], s.weight);
+            to->transmittance = brume_mean_of(s.transmittance[l], s.weight);
+        }
         out[i].depth = middle.depth;
     }
 }
@@ -142,9 +154,27 @@ void brume_filter_row(const struct brume_frame *frame,
 {
     const struct kernel *k = &k_kernels[frame->spatial];
     if (frame->edge_falloff != 0)
-        filter_edge(k, frame->edge_falloff, tap, out, n);
+        filter_edge(k, frame->edge_falloff, tap, out, n, 1, 0);
     else
         filter_plain(k, tap, out, n);
 }
+
+#if BRUME_WITH_COLOUR
+void brume_filter_colours(const struct brume_frame *frame,
+                          const struct brume_sample *const *tap,
+                          struct brume_sample *out, uint32_t n, uint32_t apart)
+{
+    const struct kernel *k = &k_kernels[frame->spatial];
+    const struct brume_sample *more[BRUME_MAX_TAPS];
+    if (frame->edge_falloff != 0) {
+        filter_edge(k, frame->edge_falloff, tap, out, n, 2, apart);
+        return;
+    }
+    for (uint32_t i = 0; i <= 2 * k->radius; i++)
+        more[i] = tap[i] + apart;
+    brume_filter_row(frame, tap, out, n);
+    brume_filter_row(frame, more, out + apart, n);
+}
+#endif
 
 #endif

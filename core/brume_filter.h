@@ -76,6 +76,12 @@ uint32_t brume_filter_radius(const struct brume_frame *frame);
 void brume_filter_row(const struct brume_frame *frame,
                       const struct brume_sample *const *tap,
                       struct brume_sample *out, uint32_t n);
+
+/* The same for both layers, with BRUME_WITH_COLOUR: the samples of layer 1 are
+ * `apart` behind those of layer 0, in taps and out. */
+void brume_filter_colours(const struct brume_frame *frame,
+                          const struct brume_sample *const *tap,
+                          struct brume_sample *out, uint32_t n, uint32_t apart);
 #endif
 
 /// brume_upsample.c ///
@@ -99,6 +105,13 @@ void brume_upsample_span(const struct brume_frame *frame,
                          const struct brume_sample *below, uint32_t first,
                          uint32_t below_weight, uint32_t x, uint32_t n,
                          struct brume_radiance *out);
+
+/* The same for both layers, with BRUME_WITH_COLOUR. */
+void brume_upsample_colours(const struct brume_frame *frame,
+                            const struct brume_sample *above,
+                            const struct brume_sample *below, uint32_t first,
+                            uint32_t below_weight, uint32_t x, uint32_t n,
+                            struct brume_radiance *out, uint32_t apart);
 #else
 BRUME_INLINE struct brume_between brume_between(const struct brume_frame *frame,
                                                 uint32_t pixel, int axis)

@@ -2,15 +2,17 @@
 /*
  * What the core's files share. A file calls only files above it:
  *
- *   brume_fixed   maths              brume_camera    rays
- *   brume_tables  exp, sRGB          brume_march     the march
- *   brume_nrooks  N-rooks sets       brume_temporal  history
- *   brume_noise   jitter             brume_resolve   reprojection
- *   brume_asset   checking           brume_output    pixels
- *   brume_lattice which rays         brume_filter    space (brume_filter.h)
- *                                    brume_upsample  resolution
- *                                    brume_show      rows to pixels
- *                                    brume           frames
+ *   brume_fixed    maths                brume_sky      behind the volume
+ *   brume_tables   exp, sRGB, filmic    brume_march    the march
+ *   brume_nrooks   N-rooks sets         brume_cache    the sun's cache
+ *   brume_noise    jitter               brume_temporal history
+ *   brume_phase    phase functions      brume_resolve  reprojection
+ *   brume_asset    checking             brume_output   pixels
+ *   brume_lattice  which rays           brume_filter   space (brume_filter.h)
+ *   brume_camera   rays                 brume_upsample resolution
+ *   brume_lighting lighting of a frame  brume_show     rows to pixels
+ *   brume_lit      the lit march        brume          frames
+ *                                       brume_shadow   the shadow outwards
  */
 #ifndef BRUME_INNER_H
 #define BRUME_INNER_H
@@ -61,6 +63,19 @@ extern const uint16_t brume_exp_fine[256];
  * (IEC 61966-2-1). 510 bytes. */
 extern const uint16_t brume_srgb_threshold[255];
 
+#if BRUME_WITH_TONE
+/* The same of BRUME_FILMIC, Q16.16. 1020 bytes. */
+extern const uint32_t brume_filmic_threshold[255];
+#endif
+
+#if BRUME_WITH_DITHER
+/* Linear values of 64, 32 and 16 levels equally far apart in sRGB, Q0.16, as
+ * of_sample reads them. 224 bytes. */
+extern const uint16_t brume_srgb_level63[64];
+extern const uint16_t brume_srgb_level31[32];
+extern const uint16_t brume_srgb_level15[16];
+#endif
+
 /// brume_nrooks.c (generated) ///
 
 /* N-rooks sets of 1 .. 16 points in their order of use: 16 row + column. 256
@@ -77,6 +92,30 @@ uint32_t brume_noise_value(int noise, const struct brume_noise_table *values,
 
 /* Is there such a noise, and has it the table that it needs? */
 bool brume_noise_usable(int noise, const struct brume_noise_table *table);
+
+/// brume_phase.c ///
+
+#if BRUME_WITH_LIGHTING
+/* The sum, truncated. */
+struct brume_number brume_number_plus(struct brume_number a,
+                                      struct brume_number b);
+
+/* log2(a) with 16 fraction bits; a > 0. Error < 2^-14. */
+int32_t brume_log2(struct brume_number a);
+
+/* 2^y, y in Q16.16. Relative error < 2^-12. */
+struct brume_number brume_exp2(uint32_t y);
+#endif
+
+#if BRUME_WITH_STOCHASTIC
+/* Axis i of point n of the R3 sequence, the powers of 1 / x for x^4 = x + 1,
+ * modulo 1 in Q0.16 and whole steps above (M. Roberts, "The Unreasonable
+ * Effectiveness of Quasirandom Sequences", 2018). */
+BRUME_INLINE uint32_t brume_r3(uint32_t n, uint32_t i)
+{
+    return n * (i == 0 ? 53685u : i == 1 ? 43978u : 36025u);
+}
+#endif
 
 /// brume_lattice.c ///
 
@@ -105,12 +144,34 @@ BRUME_INLINE uint32_t brume_cell_log2(uint32_t update, uint32_t axis)
                                      : 0;
 }
 
+/* The frame number that noise sees. */
+BRUME_INLINE uint32_t brume_noise_frame(const struct brume_frame *f)
+{
+#if BRUME_WITH_TEMPORAL
+    return f->noise_frame;
+#else
+    return f->frame;
+#endif
+}
+
+BRUME_INLINE bool brume_scene_has_haze(const struct brume_scene *s)
+{
+#if BRUME_WITH_SKY
+    return s->lighting != NULL && s->lighting->haze != 0;
+#else
+    (void)s;
+    return false;
+#endif
+}
+
 /* Does anything use the depth of the scene's rays? */
 BRUME_INLINE bool brume_scene_has_depth(const struct brume_scene *s)
 {
     return s->temporal == BRUME_TAA ||
            (s->spatial != BRUME_SPATIAL_NONE && s->edge_falloff > 0) ||
-           (s->resolution != BRUME_FULL && s->upsample == BRUME_UPSAMPLE_AWARE);
+           (s->resolution != BRUME_FULL &&
+            s->upsample == BRUME_UPSAMPLE_AWARE) ||
+           brume_scene_has_haze(s);
 }
 
 /* log2 of the frames after which every ray of the grid had its turn. */
@@ -140,15 +201,35 @@ struct brume_ray {
 #if BRUME_WITH_DEPTH
     uint32_t t; /* distance of the first sample from the eye, Q16.16 */
 #endif
+#if BRUME_WITH_LIGHTING /* when frame.lit.on */
+    int32_t unit[3];    /* direction, Q2.30 */
+    uint32_t x, y;      /* of the grid */
+    uint32_t noise[3];  /* Q0.16, three more values */
+#endif
 };
 
 /* Basis of the camera into frame->eye, ahead, per_x and per_y. */
 int brume_camera_begin(struct brume_frame *frame,
                        const struct brume_scene *scene);
 
+/* The middle of pixel (x, y) of the image, of any length, Q1.31. */
+void brume_pixel_direction(const struct brume_frame *frame, uint32_t x,
+                           uint32_t y, int32_t out[3]);
+
 /* The middle of ray (x, y) of the grid, of any length, Q1.31. */
 void brume_grid_direction(const struct brume_frame *frame, uint32_t x,
                           uint32_t y, int32_t out[3]);
+
+#if BRUME_WITH_AMBIENT || BRUME_WITH_SKY
+/* Q2.30 . Q2.30, of two unit vectors: -1 .. 1. */
+BRUME_INLINE int32_t brume_dot(const int32_t a[3], const int32_t b[3])
+{
+    int32_t sum = 0;
+    for (int i = 0; i < 3; i++)
+        sum += mul_both_signed_round(a[i], b[i], 2);
+    return sum;
+}
+#endif
 
 /* Do the rays of all n pixels from (x, y) to the right pass the pool by? Says
  * no when in doubt. */
@@ -159,12 +240,117 @@ bool brume_rays_miss(const struct brume_frame *frame, uint32_t x, uint32_t y,
 bool brume_ray_begin(struct brume_ray *ray, const struct brume_frame *frame,
                      uint32_t x, uint32_t y);
 
+/* Which doubling of the light step sample i is in: of cones those of 16 .. 64
+ * have two samples, where the error of one is largest (docs/light.md). */
+BRUME_INLINE uint32_t brume_doubling(const struct brume_frame *f, uint32_t i)
+{
+#if BRUME_WITH_CONE
+    if (f->lit.light == BRUME_CONE && i >= 4)
+        return i < 8 ? (i + 4) >> 1 : i - 2;
+#else
+    (void)f;
+#endif
+    return i;
+}
+
 /* The light ray of a jitter in Q0.16; frame has its sun and light steps. */
 void brume_light_begin(struct brume_light_ray *light,
                        const struct brume_frame *frame, uint32_t jitter);
 
 /* floor((2^32 - 1) / |move|), all ones for no move. */
 uint32_t brume_inverse_of_move(int32_t move);
+
+/// brume_lit.c ///
+
+#if BRUME_WITH_LIGHTING
+/* Has the light of the scene colours? */
+BRUME_INLINE bool brume_is_grey(const uint32_t c[3])
+{
+    return c[0] == c[1] && c[1] == c[2];
+}
+
+BRUME_INLINE uint32_t brume_ambient_colours(uint32_t ambient)
+{
+    return ambient == BRUME_AMBIENT_NONE       ? 0
+           : ambient == BRUME_AMBIENT_CONSTANT ? 1u
+           : ambient == BRUME_AMBIENT_GRADIENT ? 2u
+                                               : 6u;
+}
+
+BRUME_INLINE bool brume_scene_has_colour(const struct brume_scene *s)
+{
+    const struct brume_lighting *l = s->lighting;
+    if (!BRUME_WITH_COLOUR || l == NULL)
+        return false;
+    bool grey = brume_is_grey(l->sun_colour);
+    for (uint32_t j = 0; j < brume_ambient_colours(l->ambient); j++)
+        grey = grey && brume_is_grey(l->ambient_colour[j]);
+    return !grey;
+}
+
+/* Is the scene marched by brume_lit.c? */
+BRUME_INLINE bool brume_scene_is_lit(const struct brume_scene *s)
+{
+    return s->lighting != NULL || s->filter == BRUME_STOCHASTIC ||
+           s->light > BRUME_NO_LIGHT;
+}
+
+/* Checks the scene's lighting. */
+int brume_lit_check(const struct brume_scene *scene);
+
+/* Colours, weights and directions, of a checked scene and a volume that has
+ * what it needs; the sun is known. BRUME_ERR_SECTION when the volume lacks
+ * it. */
+int brume_lit_begin(struct brume_frame *frame, const struct brume_scene *scene);
+
+/* Mips of light = cone: of a segment of 2^m voxels' length that of level m +
+ * this. Measured: docs/light.md. */
+#define BRUME_CONE_LEVEL (-2)
+
+#if BRUME_WITH_AMBIENT
+/* A position along zenith, Q17.14. */
+BRUME_INLINE int32_t brume_along_zenith(const struct brume_frame *f,
+                                        const uint32_t p[3])
+{
+    int32_t sum = 0; /* three of at most 2^29 */
+    for (int i = 0; i < 3; i++)
+        sum += mul_signed_round(f->lit.zenith[i], p[i], 0);
+    return sum;
+}
+#endif
+
+/* A word that changes with the light. */
+uint32_t brume_lit_sameness(const struct brume_frame *frame);
+
+/* Density at a position, as brume_lookup.h's density_at. */
+bool brume_lit_density(const struct brume_frame *frame, uint32_t x, uint32_t y,
+                       uint32_t z, uint32_t *d, const uint32_t moved[3]);
+
+/* Half a voxel less the bias that positions of the frame carry, Q16.16. */
+BRUME_INLINE uint32_t brume_half_voxel(const struct brume_frame *f)
+{
+    return f->lit.stochastic ? 0x8000u : f->kernel & 4u ? 0x8000u - 128u : 0;
+}
+
+#if BRUME_WITH_CACHE
+/* Density towards the sun from a position in the pool, in units of
+ * lit.sun_unit. */
+uint32_t brume_lit_sun_sum(const struct brume_frame *frame,
+                           const uint32_t p[3]);
+#endif
+
+/* The march of a lit frame. */
+void brume_lit_march(const struct brume_frame *frame,
+                     const struct brume_ray *ray, struct brume_radiance *out);
+
+/* The end of a ray that gathered that (brume_ambient.h) in direction `unit`,
+ * Q2.30, and has a transmittance in Q1.31 left: sums to light, phase, colours,
+ * haze. out->depth is set already. For marches other than the one above. */
+struct gathered;
+void brume_lit_finish(const struct brume_frame *frame, const struct gathered *g,
+                      const int32_t unit[3], uint32_t transmittance,
+                      struct brume_radiance *out);
+#endif
 
 /// brume_march.c ///
 
@@ -198,7 +384,14 @@ void brume_march_span(const struct brume_frame *frame, uint32_t x, uint32_t y,
 /// brume_temporal.c ///
 
 /* A ray as it is kept. 65535 stands for 65536, else the values of struct
- * brume_radiance. */
+ * brume_radiance; light is divided by 2^lit.light_log2.
+ *
+ * Where light has colour, each ray has two of these: red, transmittance, depth
+ * in layer 0; green, blue, nothing in layer 1. A layer is a plane (a line) of
+ * its own, behind the other: so passes do to layer 0 what they do to a ray
+ * without colour, and then the same to layer 1, where light and transmittance
+ * are treated alike. What decides (edges, motion, turns) is in layer 0.
+ * Functions have a `layer` that is constant where they are inlined. */
 #if defined(__GNUC__)
 struct __attribute__((__may_alias__)) brume_sample {
 #else
@@ -206,6 +399,17 @@ struct brume_sample {
 #endif
     uint16_t light, transmittance, depth;
 };
+
+#define BRUME_LAYERS (BRUME_WITH_COLOUR ? 2 : 1) /* at most */
+BRUME_INLINE bool brume_has_colour(const struct brume_frame *f)
+{
+#if BRUME_WITH_COLOUR
+    return f->lit.colour;
+#else
+    (void)f;
+    return false;
+#endif
+}
 
 BRUME_INLINE uint16_t sample_of(uint32_t q16)
 {
@@ -217,11 +421,49 @@ BRUME_INLINE uint32_t of_sample(uint32_t code)
     return code + ((code + 1u) >> 16);
 }
 
-BRUME_INLINE struct brume_sample
-brume_sample_from(const struct brume_radiance *in)
+/* log2 of what a frame's light is divided by. */
+BRUME_INLINE uint32_t brume_light_log2(const struct brume_frame *f)
 {
-    struct brume_sample s = {sample_of(in->light), sample_of(in->transmittance),
-                             0};
+#if BRUME_WITH_LIGHTING
+    return f->lit.light_log2;
+#else
+    (void)f;
+    return 0;
+#endif
+}
+
+/* Light as it is kept, rounded to the nearest; what is too bright, as the
+ * brightest. */
+BRUME_INLINE uint16_t sample_of_light(uint32_t light, uint32_t log2)
+{
+#if BRUME_WITH_LIGHTING
+    const uint32_t most = 0x10000u << log2;
+    light = ((light < most ? light : most) + (1u << log2 >> 1)) >> log2;
+#else
+    (void)log2;
+#endif
+    return sample_of(light);
+}
+
+BRUME_INLINE uint32_t light_of_sample(uint32_t code, uint32_t log2)
+{
+    return of_sample(code) << log2;
+}
+
+BRUME_INLINE struct brume_sample
+brume_sample_from(const struct brume_radiance *in, uint32_t light_log2,
+                  uint32_t layer)
+{
+#if BRUME_WITH_COLOUR
+    if (layer == 1) {
+        struct brume_sample more = {sample_of_light(in->green, light_log2),
+                                    sample_of_light(in->blue, light_log2), 0};
+        return more;
+    }
+#endif
+    struct brume_sample s = {sample_of_light(in->light, light_log2),
+                             sample_of(in->transmittance), 0};
+    (void)layer;
 #if BRUME_WITH_DEPTH
     s.depth = (uint16_t)in->depth;
 #endif
@@ -242,11 +484,12 @@ BRUME_INLINE bool brume_state_fits(const struct brume_state *state,
 
 /* The frame's rays of the lattice, row after row. */
 BRUME_INLINE struct brume_sample *
-brume_sample_at(const struct brume_state *state, uint32_t i)
+brume_sample_at(const struct brume_frame *frame,
+                const struct brume_state *state, uint32_t i, uint32_t layer)
 {
     return (struct brume_sample *)(void *)((uint8_t *)(uintptr_t)state +
                                            state->samples) +
-           i;
+           layer * frame->lattice[0] * frame->lattice[1] + i;
 }
 
 /* Frames since ray (x, y) of the grid had its turn to be marched: 0 when it is
@@ -279,6 +522,43 @@ void brume_history_put(const struct brume_frame *frame,
 void brume_history_row(const struct brume_frame *frame,
                        const struct brume_state *state, uint32_t x, uint32_t y,
                        uint32_t n, struct brume_sample *out);
+
+/* The same for layer 1, with colour; brume_store_span does both. */
+void brume_colours_get(const struct brume_frame *frame,
+                       const struct brume_state *state, uint32_t plane,
+                       uint32_t i, struct brume_sample *out);
+void brume_colours_put(const struct brume_frame *frame,
+                       struct brume_state *state, uint32_t plane, uint32_t x,
+                       uint32_t y, const struct brume_sample *old,
+                       const struct brume_sample *in, uint32_t alpha);
+void brume_colours_row(const struct brume_frame *frame,
+                       const struct brume_state *state, uint32_t x, uint32_t y,
+                       uint32_t n, struct brume_sample *out);
+
+/* Either, of a layer that is known when compiling. */
+BRUME_INLINE void brume_layer_get(const struct brume_frame *f,
+                                  const struct brume_state *s, uint32_t plane,
+                                  uint32_t i, struct brume_sample *out,
+                                  uint32_t layer)
+{
+    if (BRUME_WITH_COLOUR && layer == 1)
+        brume_colours_get(f, s, plane, i, out);
+    else
+        brume_history_get(f, s, plane, i, out);
+}
+
+BRUME_INLINE void brume_layer_put(const struct brume_frame *f,
+                                  struct brume_state *s, uint32_t plane,
+                                  uint32_t x, uint32_t y,
+                                  const struct brume_sample *old,
+                                  const struct brume_sample *in, uint32_t alpha,
+                                  uint32_t layer)
+{
+    if (BRUME_WITH_COLOUR && layer == 1)
+        brume_colours_put(f, s, plane, x, y, old, in, alpha);
+    else
+        brume_history_put(f, s, plane, x, y, old, in, alpha);
+}
 #endif
 
 /// brume_resolve.c ///
@@ -294,6 +574,20 @@ void brume_resolve_span(const struct brume_frame *frame,
                         uint32_t n);
 #endif
 
+/// brume_sky.c ///
+
+#if BRUME_WITH_AMBIENT || BRUME_WITH_SKY
+/* Sets zenith, and what is behind the volume, of a checked scene. */
+void brume_sky_begin(struct brume_frame *frame,
+                     const struct brume_scene *scene);
+#endif
+
+#if BRUME_WITH_SKY
+/* The sky at pixel (x, y), Q16.16, at most BRUME_MAX_LIGHT. */
+void brume_sky_colour(const struct brume_frame *frame, uint32_t x, uint32_t y,
+                      uint32_t out[3]);
+#endif
+
 /// brume_output.c ///
 
 /* Are the w x h at (x, y) inside of a width and a height? */
@@ -303,11 +597,46 @@ BRUME_INLINE bool brume_rect_fits(const uint16_t size[2], unsigned x,
     return x <= size[0] && w <= size[0] - x && y <= size[1] && h <= size[1] - y;
 }
 
-/* Is there room for w x h pixels, and is their format compiled in? */
-int brume_pixels_check(int pixel_format, unsigned w, unsigned h, size_t stride);
+#if BRUME_WITH_LIGHTING
+/* Bits per pixel of a format, 0 when there is no such format. */
+unsigned brume_pixel_bits(int pixel_format);
+#endif
 
-/* Composes n pixels over the background and packs them. */
-void brume_pack_span(const struct brume_frame *frame,
+/* Bytes from the first pixel of a row to that of pixel i. */
+BRUME_INLINE size_t brume_pixel_offset(int pixel_format, uint32_t i)
+{
+#if BRUME_WITH_LIGHTING
+    return (size_t)i * brume_pixel_bits(pixel_format) >> 3;
+#else
+    return (size_t)i * brume_pixel_bytes(pixel_format);
+#endif
+}
+
+/* Is there room for w x h pixels, and is their format compiled in? */
+int brume_room_check(int pixel_format, unsigned w, unsigned h, size_t stride);
+
+/* The same of a rectangle that begins in column x: bytes are not shared. */
+BRUME_INLINE int brume_pixels_check(int pixel_format, unsigned x, unsigned w,
+                                    unsigned h, size_t stride)
+{
+#if BRUME_WITH_DITHER
+    if ((x & 7u) != 0 && brume_pixel_bytes(pixel_format) == 0)
+        return BRUME_ERR_RECT;
+#else
+    (void)x;
+#endif
+    return brume_room_check(pixel_format, w, h, stride);
+}
+
+#if BRUME_WITH_TONE
+/* x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14), at most 1: Q16.16 -> Q0.16,
+ * any x. Error below 0.7 of 2^-16. */
+uint32_t brume_filmic(uint32_t x);
+#endif
+
+/* Composes n pixels, those from (x, y) of the image to the right, over the
+ * background and packs them. `dst` is the byte in which the first one is. */
+void brume_pack_span(const struct brume_frame *frame, uint32_t x, uint32_t y,
                      const struct brume_radiance *in, uint32_t n,
                      int pixel_format, void *dst);
 

@@ -19,6 +19,11 @@ struct kernel {
     bool trilinear;
     bool uniform; /* light */
     bool clamp;   /* max_density */
+#if BRUME_WITH_LIGHTING
+    /* Not NULL: lookups are those of brume_lit_density, which knows the rest
+     * at run time; moved by this. */
+    const uint32_t *moved;
+#endif
 };
 
 /* Does this kernel count density in codes of 8 bits (in units of density_max /
@@ -27,6 +32,23 @@ BRUME_INLINE bool is_narrow(struct kernel k)
 {
     return k.format == BRUME_U8 && !k.trilinear && !k.clamp;
 }
+
+#define KERNEL_OF(f, a, t, u, c) \
+    { \
+        .format = (f), .side = 8 + (a), .trilinear = (t), .uniform = (u), \
+        .clamp = (c) \
+    }
+
+/* Number of a kernel, and whether it is compiled in. */
+#define KERNEL_ID(format, apron, tri, uni, clamp) \
+    ((format) << 4 | (apron) << 3 | (tri) << 2 | (uni) << 1 | (clamp))
+#define KERNEL_HAS(format, apron, tri, uni, clamp) \
+    (((format) == BRUME_U8    ? BRUME_WITH_U8 \
+      : (format) == BRUME_U8R ? BRUME_WITH_U8R \
+                              : BRUME_WITH_U4R) && \
+     (BRUME_WITH_APRON || !(apron)) && \
+     ((tri) ? BRUME_WITH_TRILINEAR : BRUME_WITH_NEAREST) && \
+     (BRUME_WITH_UNIFORM || !(uni)) && (BRUME_WITH_MAX_DENSITY || !(clamp)))
 
 BRUME_INLINE uint32_t cell_at(const struct brume_volume *v, uint32_t x,
                               uint32_t y, uint32_t z)
@@ -180,6 +202,18 @@ BRUME_INLINE bool density_at(const struct brume_frame *f, uint32_t x,
     *d = k.trilinear ? trilinear_in_brick(f, cell, x, y, z, k)
                      : nearest(f, cell, x, y, z, k);
     return true;
+}
+
+/* The same wherever the kernel is known. */
+BRUME_INLINE bool find_density(const struct brume_frame *f, uint32_t x,
+                               uint32_t y, uint32_t z, uint32_t *d,
+                               struct kernel k)
+{
+#if BRUME_WITH_LIGHTING
+    if (k.moved != NULL)
+        return brume_lit_density(f, x, y, z, d, k.moved);
+#endif
+    return density_at(f, x, y, z, d, k);
 }
 
 #endif

@@ -6,203 +6,11 @@
  * combination of format, apron, lookup, light and clamp, so that its loops
  * have no branch on any of these; `brume_march_span` picks.
  */
-#include "brume_lookup.h"
-
-/// Leaping ///
-
-/* Samples along one axis from p to the last position whose cell is less than
- * `cell` cells away. `far` = (cell - 1) << 19: the way is, forwards,
- *     (cell << 19) - 1 - (p & mask) = far + (~p & mask),
- * and backwards far + (p & mask). `inverse` is rounded down, so the quotient
- * is never too large. */
-BRUME_INLINE uint32_t leap_axis(uint32_t p, int32_t move, uint32_t inverse,
-                                uint32_t far, uint32_t margin)
-{
-    const uint32_t mask = (1u << 19) - 1u;
-    uint32_t forwards = ~sign_mask(move);
-    uint32_t room = far + ((p ^ forwards) & mask) - (margin & forwards);
-    return mul_hi_floor(room, inverse);
-}
-
-/* How many samples to move from a position in an empty cell: at least 1, and
- * such that all between lie in cells that are empty by the cell's distance,
- * its low byte. The margin is a voxel where a lookup reads one voxel beyond,
- * else 0. A line whose `inverse` is 0 moves by one: skipping off. */
-BRUME_INLINE uint32_t leap(const struct brume_frame *f,
-                           const struct brume_line *line, uint32_t x,
-                           uint32_t y, uint32_t z, uint32_t cell,
-                           struct kernel k)
-{
-    uint32_t margin = k.trilinear ? f->leap_margin : 0;
-    uint32_t far = (cell << 19) - (1u << 19); /* the shift drops the flag */
-    uint32_t n = leap_axis(x, line->move[0], line->inverse[0], far, margin);
-    uint32_t m = leap_axis(y, line->move[1], line->inverse[1], far, margin);
-    n = m < n ? m : n;
-    m = leap_axis(z, line->move[2], line->inverse[2], far, margin);
-    n = m < n ? m : n;
-    return n + 1u;
-}
-
-/// Light ///
-
-/* Is sample i of the light ray, at p + light * 2^i, in the pool? */
-BRUME_INLINE bool light_inside(const struct brume_frame *f,
-                               const struct brume_light_ray *light, uint32_t px,
-                               uint32_t py, uint32_t pz, uint32_t i)
-{
-    return px + ((uint32_t)light->first[0] << i) < f->limit[0] &&
-           py + ((uint32_t)light->first[1] << i) < f->limit[1] &&
-           pz + ((uint32_t)light->first[2] << i) < f->limit[2];
-}
-
-/* How many samples of the light ray are in the pool, which is convex: out
- * once, out for good. Searched from n, what the last position had. */
-BRUME_INLINE uint32_t light_reach(const struct brume_frame *f,
-                                  const struct brume_light_ray *light,
-                                  uint32_t px, uint32_t py, uint32_t pz,
-                                  uint32_t n)
-{
-    if (n < light->samples && light_inside(f, light, px, py, pz, n)) {
-        do
-            n++;
-        while (n < light->samples && light_inside(f, light, px, py, pz, n));
-        return n;
-    }
-    while (n > 0 && !light_inside(f, light, px, py, pz, n - 1))
-        n--;
-    return n;
-}
-
-/* d * 2^i of sample i, which is in the pool. */
-BRUME_INLINE uint32_t light_sample(const struct brume_frame *f, uint32_t px,
-                                   uint32_t py, uint32_t pz, uint32_t lx,
-                                   uint32_t ly, uint32_t lz, uint32_t i,
-                                   struct kernel k)
-{
-    uint32_t d;
-    BRUME_TALLY(light_samples, 1);
-    if (!density_at(f, px + (lx << i), py + (ly << i), pz + (lz << i), &d, k))
-        return 0;
-    return d << i;
-}
-
-/* Sum of d * 2^i over the first n samples, all in the pool. < 2^32: a 16-bit
- * code times 2^16 - 1. */
-BRUME_INLINE uint32_t sum_log(const struct brume_frame *f,
-                              const struct brume_light_ray *light, uint32_t px,
-                              uint32_t py, uint32_t pz, uint32_t n,
-                              struct kernel k)
-{
-    uint32_t lx = (uint32_t)light->first[0], sum = 0;
-    uint32_t ly = (uint32_t)light->first[1], lz = (uint32_t)light->first[2];
-    if (!BRUME_UNROLL_LIGHT || k.trilinear) {
-        for (uint32_t i = 0; i < n; i++)
-            sum += light_sample(f, px, py, pz, lx, ly, lz, i, k);
-        return sum;
-    }
-    /* Falls through from the farthest to the nearest, so that shifts are
-     * constants and nothing is counted. Compilers must not take the shifts
-     * out of the march: there are no registers to keep them. */
-    BRUME_OPAQUE(lx);
-    BRUME_OPAQUE(ly);
-    BRUME_OPAQUE(lz);
-#define LIGHT_SAMPLE(i) \
-    BRUME_FALLTHROUGH; \
-    case (i) + 1: sum += light_sample(f, px, py, pz, lx, ly, lz, i, k)
-    switch (n) {
-    default:
-        LIGHT_SAMPLE(15);
-        LIGHT_SAMPLE(14);
-        LIGHT_SAMPLE(13);
-        LIGHT_SAMPLE(12);
-        LIGHT_SAMPLE(11);
-        LIGHT_SAMPLE(10);
-        LIGHT_SAMPLE(9);
-        LIGHT_SAMPLE(8);
-        LIGHT_SAMPLE(7);
-        LIGHT_SAMPLE(6);
-        LIGHT_SAMPLE(5);
-        LIGHT_SAMPLE(4);
-        LIGHT_SAMPLE(3);
-        LIGHT_SAMPLE(2);
-        LIGHT_SAMPLE(1);
-        LIGHT_SAMPLE(0);
-        BRUME_FALLTHROUGH;
-    case 0: return sum;
-    }
-}
-
-/* Sum of d over the samples at p + first + i * light_line.move; < 2^28. */
-BRUME_INLINE uint32_t sum_uniform(const struct brume_frame *f,
-                                  const struct brume_light_ray *light,
-                                  uint32_t px, uint32_t py, uint32_t pz,
-                                  struct kernel k)
-{
-    const struct brume_line *line = &f->light_line;
-    uint32_t n = light->samples, sum = 0, m, d;
-    px += (uint32_t)light->first[0];
-    py += (uint32_t)light->first[1];
-    pz += (uint32_t)light->first[2];
-    for (uint32_t i = 0; i < n; i += m) {
-        if (px >= f->limit[0] || py >= f->limit[1] || pz >= f->limit[2])
-            break;
-        m = 1;
-        BRUME_TALLY(light_samples, 1);
-        if (density_at(f, px, py, pz, &d, k))
-            sum += d;
-        else
-            m = leap(f, line, px, py, pz, d, k);
-        px += m * (uint32_t)line->move[0];
-        py += m * (uint32_t)line->move[1];
-        pz += m * (uint32_t)line->move[2];
-    }
-    return sum;
-}
-
-/* exp(-tau) of a sum, in Q2.30. tau is rounded to 1/4096. */
-BRUME_INLINE uint32_t sun_transmittance(const struct brume_frame *f,
-                                        uint32_t sum)
-{
-    if (sum > f->tau_limit)
-        return 0;
-    uint32_t tau = (mul_hi_floor(sum << f->tau_shift, f->tau_m) + 1u) >> 1;
-    BRUME_CHECK(tau <= 0xffffu);
-    return (uint32_t)brume_exp_coarse[tau >> 8] * brume_exp_fine[tau & 255u];
-}
+#include "brume_light.h"
 
 /// View ///
 
-/* 1 - exp(-sigma_t * step) of a density, Q0.32. */
-BRUME_INLINE uint32_t opacity(const struct brume_frame *f, uint32_t d,
-                              struct kernel k)
-{
-    if (is_narrow(k))
-        return f->table[d];
-    return ~mul_hi_floor(f->table[d >> 8], f->table[256u + (d & 255u)]);
-}
-
-/* Optical depth towards the sun, as a sum of codes times weights. *reach is
- * the ray's, from one sample to the next. */
-BRUME_INLINE uint32_t light_sum(const struct brume_frame *f,
-                                const struct brume_light_ray *light, uint32_t x,
-                                uint32_t y, uint32_t z, uint32_t *reach,
-                                struct kernel k)
-{
-    if (k.uniform)
-        return sum_uniform(f, light, x, y, z, k);
-    *reach = light_reach(f, light, x, y, z, *reach);
-    return sum_log(f, light, x, y, z, *reach, k);
-}
-
 #if BRUME_WITH_DEPTH
-/* Where in the sequence of samples the light was lost: sum of lost * index,
- * Q1.31 times 2^-20. index < 2^20, so each term is below 2^31, and the sum is,
- * as the losses sum to 1. */
-BRUME_INLINE uint32_t moment(uint32_t lost, uint32_t index)
-{
-    return mul_hi_floor(lost, index << 12);
-}
-
 uint32_t brume_mean_depth(const struct brume_frame *frame, uint32_t t,
                           uint32_t moment, uint32_t lost)
 {
@@ -228,6 +36,9 @@ static void finish(const struct brume_frame *f, uint32_t light,
 #if BRUME_WITH_DEPTH
     out->depth = 0;
 #endif
+#if BRUME_WITH_COLOUR
+    out->green = out->blue = 0;
+#endif
 }
 
 BRUME_INLINE void march(const struct brume_frame *f,
@@ -246,13 +57,13 @@ BRUME_INLINE void march(const struct brume_frame *f,
     for (;;) {
         m = 1;
         BRUME_TALLY(view_samples, 1);
-        if (!density_at(f, x, y, z, &d, k)) {
+        if (!find_density(f, x, y, z, &d, k)) {
             m = leap(f, line, x, y, z, d, k);
         } else if (d > f->min_density) {
             BRUME_TALLY(lit_samples, 1);
             uint32_t sum = light_sum(f, &ray->light, x, y, z, &reach, k);
             uint32_t lost = mul_hi_floor(transmittance, opacity(f, d, k));
-            light += mul_hi_floor(lost, sun_transmittance(f, sum));
+            light += mul_hi_floor(lost, transmittance_of(&f->tau, sum));
             transmittance -= lost;
 #if BRUME_WITH_DEPTH
             where += moment(lost, ray->count - left);
@@ -275,6 +86,14 @@ BRUME_INLINE void march(const struct brume_frame *f,
 #endif
 }
 
+#if BRUME_WITH_LIGHTING
+#define is_lit(k) ((k).moved != NULL)
+#define march_lit brume_lit_march
+#else
+#define is_lit(k) false
+#define march_lit(f, ray, out) (void)0
+#endif
+
 /* Rays are told to miss in groups of eight: fewer cost as much to tell as to
  * try. */
 #define RAY_GROUP 8
@@ -293,31 +112,22 @@ BRUME_INLINE void span(const struct brume_frame *f, uint32_t x, uint32_t y,
         if (i % RAY_GROUP == 0)
             miss = brume_rays_miss(f, x + i, y,
                                    n - i < RAY_GROUP ? n - i : RAY_GROUP);
-        if (!miss && brume_ray_begin(&ray, f, x + i, y))
-            march(f, &ray, &out[i], k);
-        else
+        if (miss || !brume_ray_begin(&ray, f, x + i, y))
             out[i] = clear;
+        else if (is_lit(k))
+            march_lit(f, &ray, &out[i]);
+        else
+            march(f, &ray, &out[i], k);
     }
 }
 
 /// Kernels ///
 
-/* Number of a kernel, and whether it is compiled in. */
-#define KERNEL_ID(format, apron, tri, uni, clamp) \
-    ((format) << 4 | (apron) << 3 | (tri) << 2 | (uni) << 1 | (clamp))
-#define KERNEL_HAS(format, apron, tri, uni, clamp) \
-    (((format) == BRUME_U8    ? BRUME_WITH_U8 \
-      : (format) == BRUME_U8R ? BRUME_WITH_U8R \
-                              : BRUME_WITH_U4R) && \
-     (BRUME_WITH_APRON || !(apron)) && \
-     ((tri) ? BRUME_WITH_TRILINEAR : BRUME_WITH_NEAREST) && \
-     (BRUME_WITH_UNIFORM || !(uni)) && (BRUME_WITH_MAX_DENSITY || !(clamp)))
-
 #define KERNEL(format, apron, tri, uni, clamp) \
     case KERNEL_ID(format, apron, tri, uni, clamp): \
         if (KERNEL_HAS(format, apron, tri, uni, clamp)) { \
-            static const struct kernel k_kernel = {format, 8 + (apron), tri, \
-                                                   uni, clamp}; \
+            static const struct kernel k_kernel = \
+                KERNEL_OF(format, apron, tri, uni, clamp); \
             span(f, x, y, n, out, k_kernel); \
         } \
         break;
@@ -334,6 +144,14 @@ void brume_march_span(const struct brume_frame *frame, uint32_t x, uint32_t y,
 {
     const struct brume_frame *f = frame;
     BRUME_CHECK(n <= BRUME_SPAN);
+#if BRUME_WITH_LIGHTING
+    if (f->lit.on) {
+        static const uint32_t k_moved[3];
+        static const struct kernel k_lit = {.moved = k_moved};
+        span(f, x, y, n, out, k_lit);
+        return;
+    }
+#endif
     switch (f->kernel) {
         KERNELS(BRUME_U8)
         KERNELS(BRUME_U8R)
@@ -377,31 +195,30 @@ static void fill_table(struct brume_frame *f, struct brume_number unit,
     }
 }
 
-static bool tau_fits(const struct brume_frame *f, uint32_t sum)
+static bool tau_fits(const struct brume_tau *t, uint32_t sum)
 {
-    return sum <= 0xffffffffu >> f->tau_shift &&
-           mul_hi_floor(sum << f->tau_shift, f->tau_m) <= 131070u;
+    return sum <= 0xffffffffu >> t->shift &&
+           mul_hi_floor(sum << t->shift, t->m) <= 131070u;
 }
 
-/* unit: optical depth per unit of the light sum. The march takes tau * 2^13
- * as the high word of (sum << shift) * m. */
-static void set_tau(struct brume_frame *f, struct brume_number unit)
+/* unit: optical depth per unit of the light sum. */
+static void set_tau(struct brume_tau *t, struct brume_number unit)
 {
     int32_t shift = unit.e + 45;
-    f->tau_m = unit.m;
-    f->tau_shift = 0;
-    f->tau_limit = 0;
+    t->m = unit.m;
+    t->shift = 0;
+    t->limit = 0;
     if (unit.m == 0 || shift <= -32)
-        f->tau_m = 0;
+        t->m = 0;
     else if (shift < 0)
-        f->tau_m = unit.m >> (uint32_t)-shift;
+        t->m = unit.m >> (uint32_t)-shift;
     else if (shift > 31) /* any sum but 0 is black */
         return;
     else
-        f->tau_shift = (uint32_t)shift;
+        t->shift = (uint32_t)shift;
     for (uint32_t bit = 0x80000000u; bit != 0; bit >>= 1)
-        if (tau_fits(f, f->tau_limit | bit))
-            f->tau_limit |= bit;
+        if (tau_fits(t, t->limit | bit))
+            t->limit |= bit;
 }
 
 /* Density in codes: floor(density / density_max * 255 or 65280). The quotient
@@ -421,14 +238,62 @@ static void set_light(struct brume_frame *f, const struct brume_scene *s)
 {
     struct brume_line *line = &f->light_line;
     f->light_kind = s->light == BRUME_UNIFORM ? BRUME_UNIFORM : BRUME_LOG;
+    uint32_t jitter = 0;
+#if BRUME_WITH_CONE
+    if (s->light == BRUME_CONE) /* the middle of each segment */
+        jitter = 0x8000u;
+#endif
     f->light_samples = s->light == BRUME_NO_LIGHT ? 0 : s->light_samples;
+#if BRUME_WITH_CACHE
+    if (s->light == BRUME_CACHE)
+        f->light_samples = 0;
+#endif
     f->light_step = s->light_step;
     for (int i = 0; i < 3; i++) {
         line->move[i] = mul_signed_round(f->sun[i], s->light_step, 2);
         line->inverse[i] = s->skip ? brume_inverse_of_move(line->move[i]) : 0;
     }
-    brume_light_begin(&f->light, f, 0);
+    brume_light_begin(&f->light, f, jitter);
 }
+
+#if BRUME_WITH_LIGHTING
+/* Depths of the octaves and of the sky. unit: density of a code; light_step:
+ * light_density_scale times that step. */
+static void set_lit_taus(struct brume_frame *f, const struct brume_scene *s,
+                         struct brume_number unit)
+{
+    const struct brume_lighting *l = f->lit.lighting;
+    const struct brume_number scale = brume_number_q32(s->light_density_scale);
+    struct brume_number depth =
+        brume_number_mul(unit, brume_number_of(s->light_step, -16));
+#if BRUME_WITH_CONE
+    if (s->light == BRUME_CONE) /* counts in 16-bit codes */
+        depth = brume_number_mul(
+            brume_number_mul(f->volume->density_max, per_code(false)),
+            brume_number_of(s->light_step, -16));
+#endif
+#if BRUME_WITH_CACHE
+    if (s->light == BRUME_CACHE) {
+        depth = f->lit.cache.unit;
+        depth.e -= 13;
+    }
+    f->lit.sun_unit = depth;
+#endif
+    depth = brume_number_mul(depth, scale);
+    for (uint32_t i = 0; i < f->lit.octaves; i++) {
+        set_tau(&f->lit.tau[i], depth);
+        if (l != NULL)
+            depth = brume_number_mul(depth, brume_number_of(l->octave_a, -16));
+    }
+#if BRUME_WITH_AMBIENT
+    if (l != NULL && l->visibility == BRUME_SKY_SAMPLED) {
+        depth =
+            brume_number_mul(unit, brume_number_of(l->visibility_step, -16));
+        set_tau(&f->lit.sky_tau, brume_number_mul(depth, scale));
+    }
+#endif
+}
+#endif
 
 int brume_march_begin(struct brume_frame *frame,
                       const struct brume_scene *scene)
@@ -444,6 +309,12 @@ int brume_march_begin(struct brume_frame *frame,
     bool narrow = v->format == BRUME_U8 && !tri && !clamp;
     if (!kernel_is_compiled(v->format, apron, tri, uni, clamp))
         return BRUME_ERR_FEATURE;
+#if BRUME_WITH_LIGHTING
+    int err = brume_lit_begin(f, scene);
+    if (err)
+        return err;
+    uni = uni && !f->lit.on; /* lit frames know their light otherwise */
+#endif
     f->kernel = (uint8_t)KERNEL_ID(v->format, apron, tri, uni, clamp);
     f->max_density = clamp ? codes_of(limit, v, false) : BRUME_RANGE_TOP;
     f->min_density =
@@ -451,6 +322,10 @@ int brume_march_begin(struct brume_frame *frame,
             ? 0
             : codes_of(brume_number_q32(scene->min_density), v, narrow);
     f->leap_margin = tri && (!apron || clamp) ? 0x10000u : 0;
+#if BRUME_WITH_STOCHASTIC
+    if (f->lit.stochastic)
+        f->leap_margin = 0x10000u;
+#endif
     f->skip = scene->skip;
     struct brume_number unit =
         brume_number_mul(v->density_max, per_code(narrow));
@@ -460,7 +335,10 @@ int brume_march_begin(struct brume_frame *frame,
     light_step = brume_number_mul(light_step,
                                   brume_number_q32(scene->light_density_scale));
     fill_table(f, brume_number_mul(unit, step), narrow);
-    set_tau(f, brume_number_mul(unit, light_step));
+    set_tau(&f->tau, brume_number_mul(unit, light_step));
+#if BRUME_WITH_LIGHTING
+    set_lit_taus(f, scene, unit);
+#endif
     set_light(f, scene);
     return BRUME_OK;
 }

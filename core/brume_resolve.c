@@ -10,6 +10,8 @@
  *
  * While nothing moves, history is neither resampled nor clipped: then this is
  * brume_temporal.c's moving average.
+ *
+ * A ray is an array of its layers' samples.
  */
 #include "brume_inner.h"
 
@@ -18,8 +20,8 @@
 /* Depths that differ by more, a sixteenth of an octave, are two things. */
 #define DISOCCLUDED 128u
 
-/* What this frame's rays around a place say about light and transmittance, in
- * 16 bits. */
+/* What this frame's rays around a place say about light and transmittance of a
+ * layer, in 16 bits. */
 struct vicinity {
     uint32_t low[2], high[2], mean[2];
     uint32_t depth; /* mean of those that have one */
@@ -119,7 +121,7 @@ static bool reproject(const struct brume_frame *f, const struct brume_state *s,
 
 /// Fetch ///
 
-static uint32_t held(int32_t i, uint32_t size)
+BRUME_INLINE uint32_t held(int32_t i, uint32_t size)
 {
     return i < 0 ? 0 : (uint32_t)i < size ? (uint32_t)i : size - 1u;
 }
@@ -140,9 +142,10 @@ static void weights_of(uint32_t fetch, int32_t t, int32_t w[4])
     w[1] = 16384 - w[0] - w[2] - w[3];
 }
 
-/* History at a place, and its depth at the ray next to it. */
-static void fetch(const struct brume_frame *f, const struct brume_state *s,
-                  const int32_t at[2], struct brume_sample *out)
+/* A layer of history at a place, and its depth at the ray next to it. */
+BRUME_INLINE void fetch(const struct brume_frame *f,
+                        const struct brume_state *s, const int32_t at[2],
+                        struct brume_sample *out, uint32_t layer)
 {
     int32_t x = (at[0] + 256) / 256 - 1, y = (at[1] + 256) / 256 - 1;
     int32_t across[4], down[4], sum[2] = {0, 0};
@@ -162,7 +165,7 @@ static void fetch(const struct brume_frame *f, const struct brume_state *s,
              * of it: below 2^31 */
             uint32_t n = held(y + j - 1, f->grid[1]) * f->grid[0] +
                          held(x + i - 1, f->grid[0]);
-            brume_history_get(f, s, plane, n, &h);
+            brume_layer_get(f, s, plane, n, &h, layer);
             row[0] += across[i] * h.light;
             row[1] += across[i] * h.transmittance;
         }
@@ -172,7 +175,8 @@ static void fetch(const struct brume_frame *f, const struct brume_state *s,
     }
     uint32_t n = held(y + (ty >= 128), f->grid[1]) * f->grid[0] +
                  held(x + (tx >= 128), f->grid[0]);
-    brume_history_get(f, s, plane, n, out);
+    if (layer == 0)
+        brume_history_get(f, s, plane, n, out);
     out->light = (uint16_t)held((sum[0] + 8192) / 16384, 65536);
     out->transmittance = (uint16_t)held((sum[1] + 8192) / 16384, 65536);
 }
@@ -191,8 +195,8 @@ static uint32_t root_of(uint32_t v)
 /* The range of a quantity: its mean +- gamma deviations. Given are the mean of
  * what its 9 values differ from one of them, and the sum of the squares of
  * that, in 14 bits: < 2^14 and < 9 * 2^28. */
-static void spread(const struct brume_frame *f, struct vicinity *v, uint32_t q,
-                   int32_t mean, uint32_t squares)
+BRUME_INLINE void spread(const struct brume_frame *f, struct vicinity *v,
+                         uint32_t q, int32_t mean, uint32_t squares)
 {
     uint32_t rest = squares / 9u, square = magnitude(mean) * magnitude(mean);
     uint32_t deviation = root_of(rest > square ? rest - square : 0);
@@ -202,8 +206,9 @@ static void spread(const struct brume_frame *f, struct vicinity *v, uint32_t q,
 }
 
 /* Adds a ray to what is known of its neighbours'. */
-static void add_ray(struct vicinity *v, const struct brume_sample *in,
-                    const uint32_t base[2], int32_t sum[2], uint32_t squares[2])
+BRUME_INLINE void add_ray(struct vicinity *v, const struct brume_sample *in,
+                          const uint32_t base[2], int32_t sum[2],
+                          uint32_t squares[2])
 {
     const uint32_t value[2] = {in->light, in->transmittance};
     if (in->depth != BRUME_NO_DEPTH) {
@@ -219,10 +224,12 @@ static void add_ray(struct vicinity *v, const struct brume_sample *in,
     }
 }
 
-/* The 3x3 rays of this frame's lattice around that of ray (x, y), `own`. */
-static void look_around(const struct brume_frame *f,
-                        const struct brume_state *s, uint32_t x, uint32_t y,
-                        const struct brume_sample *own, struct vicinity *v)
+/* The 3x3 rays of this frame's lattice around that of ray (x, y), `own`, in a
+ * layer. */
+BRUME_INLINE void look_around(const struct brume_frame *f,
+                              const struct brume_state *s, uint32_t x,
+                              uint32_t y, const struct brume_sample *own,
+                              struct vicinity *v, uint32_t layer)
 {
     int32_t cx = (int32_t)(x >> f->cell_log2[0]);
     int32_t cy = (int32_t)(y >> f->cell_log2[1]);
@@ -235,8 +242,8 @@ static void look_around(const struct brume_frame *f,
     for (int32_t j = cy - 1; j <= cy + 1; j++)
         for (int32_t i = cx - 1; i <= cx + 1; i++) {
             uint32_t row = held(j, f->lattice[1]) * f->lattice[0];
-            add_ray(v, brume_sample_at(s, row + held(i, f->lattice[0])), base,
-                    sum, squares);
+            row += held(i, f->lattice[0]);
+            add_ray(v, brume_sample_at(f, s, row, layer), base, sum, squares);
         }
     v->depth = v->deep > 0 ? v->depth / v->deep : BRUME_NO_DEPTH;
     for (uint32_t q = 0; q < 2; q++) {
@@ -249,7 +256,8 @@ static void look_around(const struct brume_frame *f,
 
 /* How far a value may go from the mean towards where it is, to be in the
  * range, Q0.16. All are below 2^16 where it matters. */
-static uint32_t room_for(const struct vicinity *v, uint32_t q, uint32_t value)
+BRUME_INLINE uint32_t room_for(const struct vicinity *v, uint32_t q,
+                               uint32_t value)
 {
     uint32_t mean = v->mean[q];
     if (value < v->low[q])
@@ -259,13 +267,19 @@ static uint32_t room_for(const struct vicinity *v, uint32_t q, uint32_t value)
     return 0x10000u;
 }
 
-/* Moves history towards the mean until both quantities are in their ranges.
- * Returns what is left of its way from the mean, Q0.16. */
-static uint32_t clip(const struct vicinity *v, struct brume_sample *h)
+/* That of both quantities of a layer. */
+BRUME_INLINE uint32_t room_of(const struct vicinity *v,
+                              const struct brume_sample *h)
+{
+    uint32_t room = room_for(v, 0, h->light);
+    uint32_t other = room_for(v, 1, h->transmittance);
+    return other < room ? other : room;
+}
+
+BRUME_INLINE void draw_in(const struct vicinity *v, struct brume_sample *h,
+                          uint32_t room)
 {
     uint32_t value[2] = {h->light, h->transmittance};
-    uint32_t room = room_for(v, 0, value[0]), other = room_for(v, 1, value[1]);
-    room = other < room ? other : room;
     for (uint32_t q = 0; q < 2; q++) {
         uint32_t mean = v->mean[q], n = value[q];
         uint32_t way = ((n < mean ? mean - n : n - mean) * (room >> 1)) >> 15;
@@ -273,6 +287,21 @@ static uint32_t clip(const struct vicinity *v, struct brume_sample *h)
     }
     h->light = (uint16_t)value[0];
     h->transmittance = (uint16_t)value[1];
+}
+
+/* Moves history towards the mean until all quantities are in their ranges, and
+ * a colour by the same share in all channels: it keeps its hue. Returns what is
+ * left of its way from the mean, Q0.16. */
+static uint32_t clip(const struct vicinity *v, struct brume_sample *h,
+                     bool colour)
+{
+    uint32_t room = room_of(v, h);
+    if (colour) {
+        uint32_t other = room_of(v + 1, h + 1);
+        room = other < room ? other : room;
+        draw_in(v + 1, h + 1, room);
+    }
+    draw_in(v, h, room);
     return room;
 }
 
@@ -281,19 +310,26 @@ static uint32_t between(uint32_t n, uint32_t low, uint32_t high)
     return n < low ? low : n > high ? high : n;
 }
 
+BRUME_INLINE void hold_in(const struct vicinity *v, struct brume_sample *h)
+{
+    h->light = (uint16_t)between(h->light, v->low[0], v->high[0]);
+    h->transmittance =
+        (uint16_t)between(h->transmittance, v->low[1], v->high[1]);
+}
+
 /* Holds history to the range, and returns the weight of this frame: the more
  * had to be taken away, the less is the rest believed, by up to half. */
 static uint32_t hold(const struct brume_frame *f, const struct vicinity *v,
-                     struct brume_sample *h)
+                     struct brume_sample *h, bool colour)
 {
     if (f->clamp == BRUME_CLAMP_MINMAX) {
-        h->light = (uint16_t)between(h->light, v->low[0], v->high[0]);
-        h->transmittance =
-            (uint16_t)between(h->transmittance, v->low[1], v->high[1]);
+        hold_in(v, h);
+        if (colour)
+            hold_in(v + 1, h + 1);
     }
     if (f->clamp != BRUME_CLAMP_VARIANCE)
         return f->alpha;
-    uint32_t lost = (0x10000u - clip(v, h)) >> 1;
+    uint32_t lost = (0x10000u - clip(v, h, colour)) >> 1;
     return f->alpha + (lost * ((0x10000u - f->alpha) >> 1) >> 15);
 }
 
@@ -302,37 +338,60 @@ static uint32_t hold(const struct brume_frame *f, const struct vicinity *v,
 /* History of ray (x, y) at the place that it comes from; false when that is
  * not in the image, or another thing was there. */
 static bool find(const struct brume_frame *f, const struct brume_state *s,
-                 uint32_t x, uint32_t y, uint32_t depth, struct brume_sample *h)
+                 uint32_t x, uint32_t y, uint32_t depth, struct brume_sample *h,
+                 bool colour)
 {
     int32_t at[2];
     if (!reproject(f, s, x, y, &depth, at))
         return false;
-    fetch(f, s, at, h);
+    fetch(f, s, at, h, 0);
+    if (colour)
+        fetch(f, s, at, h + 1, 1);
     return h->depth == BRUME_NO_DEPTH ||
            magnitude((int32_t)depth - h->depth) <= DISOCCLUDED;
+}
+
+/* History of ray number i where it is. */
+BRUME_INLINE void get_ray(const struct brume_frame *f,
+                          const struct brume_state *s, uint32_t i,
+                          struct brume_sample *h, bool colour)
+{
+    brume_layer_get(f, s, s->now ^ 1u, i, h, 0);
+    if (colour)
+        brume_layer_get(f, s, s->now ^ 1u, i, h + 1, 1);
+}
+
+/* Half of it, and half of the mean. */
+BRUME_INLINE void halve(const struct vicinity *v, struct brume_sample *in)
+{
+    in->light = (uint16_t)((in->light + v->mean[0] + 1u) >> 1);
+    in->transmittance = (uint16_t)((in->transmittance + v->mean[1] + 1u) >> 1);
 }
 
 /* The ray's history into *h, and the weight of this frame's ray beside it.
  * False when it has none; then *in is drawn towards its neighbours. */
 static bool history_of(const struct brume_frame *f, const struct brume_state *s,
                        uint32_t x, uint32_t y, struct brume_sample *in,
-                       struct brume_sample *h, uint32_t *alpha)
+                       struct brume_sample *h, uint32_t *alpha, bool colour)
 {
-    struct vicinity v;
+    struct vicinity v[BRUME_LAYERS];
     *alpha = f->alpha;
     if (s->at_rest)
-        brume_history_get(f, s, s->now ^ 1u, y * f->grid[0] + x, h);
+        get_ray(f, s, y * f->grid[0] + x, h, colour);
     if (s->still)
         return true;
-    look_around(f, s, x, y, in, &v);
-    if (v.depth == BRUME_NO_DEPTH) /* clear: there is nothing to average */
+    look_around(f, s, x, y, in, v, 0);
+    if (v->depth == BRUME_NO_DEPTH) /* clear: there is nothing to average */
         return false;
-    if (s->at_rest || find(f, s, x, y, v.depth, h)) {
-        *alpha = hold(f, &v, h);
+    if (colour)
+        look_around(f, s, x, y, in + 1, v + 1, 1);
+    if (s->at_rest || find(f, s, x, y, v->depth, h, colour)) {
+        *alpha = hold(f, v, h, colour);
         return true;
     }
-    in->light = (uint16_t)((in->light + v.mean[0] + 1u) >> 1);
-    in->transmittance = (uint16_t)((in->transmittance + v.mean[1] + 1u) >> 1);
+    halve(v, in);
+    if (colour)
+        halve(v + 1, in + 1);
     return false;
 }
 
@@ -350,28 +409,43 @@ static uint32_t weight_of_turn(const struct brume_frame *f,
     return 0x10000u - keep;
 }
 
+BRUME_INLINE void copy_ray(struct brume_sample *out,
+                           const struct brume_sample *in, bool colour)
+{
+    out[0] = in[0];
+    if (colour)
+        out[1] = in[1];
+}
+
 void brume_resolve_span(const struct brume_frame *frame,
                         struct brume_state *state, uint32_t x, uint32_t y,
                         uint32_t n)
 {
     const struct brume_frame *f = frame;
+    const bool colour = brume_has_colour(f);
     for (uint32_t i = x; i < x + n; i++) {
+        struct brume_sample in[BRUME_LAYERS], h[BRUME_LAYERS];
         /* That of a neighbour when the ray was not marched. */
-        struct brume_sample in =
-            *brume_sample_at(state, brume_lattice_index(f, i, y));
-        struct brume_sample h = in;
-        uint32_t depth = in.depth, alpha, age = brume_age_of(f, i, y);
+        uint32_t from = brume_lattice_index(f, i, y);
+        in[0] = *brume_sample_at(f, state, from, 0);
+        if (colour)
+            in[BRUME_LAYERS - 1] = *brume_sample_at(f, state, from, 1);
+        copy_ray(h, in, colour);
+        uint32_t depth = in->depth, alpha, age = brume_age_of(f, i, y);
         /* One that weighs all has no use for history. */
         if (state->frames == 0 || (age == 0 && f->alpha == 0x10000u) ||
-            !history_of(f, state, i, y, &in, &h, &alpha))
+            !history_of(f, state, i, y, in, h, &alpha, colour))
             alpha = 0x10000u;
         else if (age > 0)
-            in = h;
+            copy_ray(in, h, colour);
         else
             alpha = weight_of_turn(f, state, alpha);
         if (!state->still)
-            h.depth = in.depth = (uint16_t)depth;
-        brume_history_put(f, state, state->now, i, y, &h, &in, alpha);
+            h->depth = in->depth = (uint16_t)depth;
+        brume_history_put(f, state, state->now, i, y, h, in, alpha);
+        if (colour)
+            brume_layer_put(f, state, state->now, i, y, h + 1, in + 1, alpha,
+                            1);
     }
 }
 

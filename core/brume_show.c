@@ -8,6 +8,9 @@
  * makes one line of them, the row pass works in that line, and two such lines
  * are upsampled. Nothing depends on where the rectangle begins: any cutting
  * gives the same pixels.
+ *
+ * With colour there is the same once more for layer 1: each of its samples is
+ * `apart` behind that of layer 0.
  */
 #include "brume_filter.h"
 
@@ -28,6 +31,7 @@ struct show {
     struct brume_sample *line[2]; /* see line_of */
     struct brume_sample *ring;    /* a row per tap, `fetched` samples each */
     uint32_t oldest;              /* of the rows in the ring */
+    uint32_t apart;               /* samples between the layers; with colour */
 };
 
 static uint32_t radius_of(const struct brume_frame *f)
@@ -47,6 +51,15 @@ static uint32_t smaller(uint32_t a, uint32_t b)
 
 /// Rows of the grid ///
 
+/* A layer of the first n rays of s->span. */
+BRUME_INLINE void take_span(const struct show *s, uint32_t n, uint32_t layer,
+                            struct brume_sample *out)
+{
+    const uint32_t log2 = brume_light_log2(s->frame);
+    for (uint32_t k = 0; k < n; k++)
+        *out++ = brume_sample_from(&s->span[k], log2, layer);
+}
+
 /* s->fetched rays of row y, marched here when there is no state. */
 static void fetch_row(const struct show *s, uint32_t y,
                       struct brume_sample *out)
@@ -54,14 +67,19 @@ static void fetch_row(const struct show *s, uint32_t y,
 #if BRUME_WITH_TEMPORAL
     if (s->state != NULL) {
         brume_history_row(s->frame, s->state, s->from, y, s->fetched, out);
+        if (BRUME_WITH_COLOUR && brume_has_colour(s->frame))
+            brume_colours_row(s->frame, s->state, s->from, y, s->fetched,
+                              out + s->apart);
         return;
     }
 #endif
     for (uint32_t i = 0; i < s->fetched; i += BRUME_SPAN) {
         uint32_t n = smaller(s->fetched - i, BRUME_SPAN);
         brume_march_span(s->frame, s->from + i, y, n, s->span);
-        for (uint32_t k = 0; k < n; k++)
-            *out++ = brume_sample_from(&s->span[k]);
+        take_span(s, n, 0, out);
+        if (brume_has_colour(s->frame))
+            take_span(s, n, 1, out + s->apart);
+        out += n;
     }
 }
 
@@ -94,6 +112,16 @@ static void pad_line(struct brume_sample *line, uint32_t from, uint32_t to,
         line[i] = line[to - 1u];
 }
 
+BRUME_INLINE void filter(const struct show *s,
+                         const struct brume_sample *const *tap,
+                         struct brume_sample *out, uint32_t n)
+{
+    if (BRUME_WITH_COLOUR && brume_has_colour(s->frame))
+        brume_filter_colours(s->frame, tap, out, n, s->apart);
+    else
+        brume_filter_row(s->frame, tap, out, n);
+}
+
 /* Row y, filtered; beyond its edges the grid goes on as it ends. Rows must be
  * asked for from top to bottom. */
 static void filter_row(struct show *s, uint32_t y, struct brume_sample *out)
@@ -107,11 +135,14 @@ static void filter_row(struct show *s, uint32_t y, struct brume_sample *out)
         uint32_t row = y + k > s->radius ? y + k - s->radius : 0;
         tap[k] = ring_row(s, smaller(row, bottom));
     }
-    brume_filter_row(s->frame, tap, out + pad, s->fetched);
+    filter(s, tap, out + pad, s->fetched);
     pad_line(out, pad, pad + s->fetched, s->columns + 2u * s->radius);
+    if (brume_has_colour(s->frame))
+        pad_line(out + s->apart, pad, pad + s->fetched,
+                 s->columns + 2u * s->radius);
     for (uint32_t k = 0; k < taps; k++)
         tap[k] = out + k;
-    brume_filter_row(s->frame, tap, out, s->columns);
+    filter(s, tap, out, s->columns);
 }
 #endif
 
@@ -129,18 +160,35 @@ static void make_row(struct show *s, uint32_t y, struct brume_sample *out)
 
 /// A ray per pixel ///
 
-static void pack_row(const struct show *s, const struct brume_sample *in,
-                     uint32_t n, uint8_t *dst)
+/* Layer 1 of the first n rays of s->span. */
+BRUME_INLINE void give_colours(const struct show *s,
+                               const struct brume_sample *in, uint32_t n,
+                               uint32_t log2)
 {
-    const unsigned bytes = brume_pixel_bytes(s->pixel_format);
+#if BRUME_WITH_COLOUR
+    for (uint32_t k = 0; k < n; k++) {
+        s->span[k].green = light_of_sample(in[k].light, log2);
+        s->span[k].blue = light_of_sample(in[k].transmittance, log2);
+    }
+#else
+    (void)s, (void)in, (void)n, (void)log2;
+#endif
+}
+
+static void pack_row(const struct show *s, uint32_t x, uint32_t y,
+                     const struct brume_sample *in, uint32_t n, uint8_t *dst)
+{
+    const uint32_t log2 = brume_light_log2(s->frame);
     for (uint32_t i = 0; i < n; i += BRUME_SPAN) {
         uint32_t m = smaller(n - i, BRUME_SPAN);
         for (uint32_t k = 0; k < m; k++) {
-            s->span[k].light = of_sample(in[i + k].light);
+            s->span[k].light = light_of_sample(in[i + k].light, log2);
             s->span[k].transmittance = of_sample(in[i + k].transmittance);
         }
-        brume_pack_span(s->frame, s->span, m, s->pixel_format,
-                        dst + (size_t)i * bytes);
+        if (brume_has_colour(s->frame))
+            give_colours(s, in + i + s->apart, m, log2);
+        brume_pack_span(s->frame, x + i, y, s->span, m, s->pixel_format,
+                        dst + brume_pixel_offset(s->pixel_format, i));
     }
 }
 
@@ -148,13 +196,12 @@ static void pack_row(const struct show *s, const struct brume_sample *in,
 static void show_unfiltered(struct show *s, uint32_t y, uint32_t w,
                             uint8_t *dst)
 {
-    const uint32_t bytes = brume_pixel_bytes(s->pixel_format);
     const uint32_t end = s->first + w;
     for (s->from = s->first; s->from < end; s->from += s->fetched) {
         s->fetched = smaller(end - s->from, BRUME_SPAN);
         fetch_row(s, y, s->line[0]);
-        pack_row(s, s->line[0], s->fetched, dst);
-        dst += s->fetched * bytes;
+        pack_row(s, s->from, y, s->line[0], s->fetched,
+                 dst + brume_pixel_offset(s->pixel_format, s->from - s->first));
     }
 }
 
@@ -167,18 +214,32 @@ static void show_full(struct show *s, uint32_t y, uint32_t w, uint32_t h,
             continue;
         }
         make_row(s, y + j, s->line[0]);
-        pack_row(s, s->line[0], w, dst);
+        pack_row(s, s->first, y + j, s->line[0], w, dst);
     }
 }
 
 /// Pixels between rays ///
+
+#if BRUME_WITH_RESOLUTION
+/* n pixels from column x, between a row and the one below it, line[0]. */
+BRUME_INLINE void blend_rows(const struct show *s,
+                             const struct brume_sample *above, uint32_t weight,
+                             uint32_t x, uint32_t n)
+{
+    if (BRUME_WITH_COLOUR && brume_has_colour(s->frame))
+        brume_upsample_colours(s->frame, above, s->line[0], s->first, weight, x,
+                               n, s->span, s->apart);
+    else
+        brume_upsample_span(s->frame, above, s->line[0], s->first, weight, x, n,
+                            s->span);
+}
+#endif
 
 /* Row `made` of the grid is in line[0], the one before it in line[1]. */
 static void show_upsampled(struct show *s, uint32_t x, uint32_t y, uint32_t w,
                            uint32_t h, uint8_t *dst, size_t stride)
 {
 #if BRUME_WITH_RESOLUTION
-    const unsigned bytes = brume_pixel_bytes(s->pixel_format);
     uint32_t made = brume_between(s->frame, y, 1).before;
     make_row(s, made, s->line[0]);
     for (uint32_t j = 0; j < h; j++, dst += stride) {
@@ -192,10 +253,9 @@ static void show_upsampled(struct show *s, uint32_t x, uint32_t y, uint32_t w,
         const uint32_t above = row.before == row.after ? 0 : 1;
         for (uint32_t i = 0; i < w; i += BRUME_SPAN) {
             uint32_t n = smaller(w - i, BRUME_SPAN);
-            brume_upsample_span(s->frame, s->line[above], s->line[0], s->first,
-                                row.weight, x + i, n, s->span);
-            brume_pack_span(s->frame, s->span, n, s->pixel_format,
-                            dst + (size_t)i * bytes);
+            blend_rows(s, s->line[above], row.weight, x + i, n);
+            brume_pack_span(s->frame, x + i, y + j, s->span, n, s->pixel_format,
+                            dst + brume_pixel_offset(s->pixel_format, i));
         }
     }
 #else
@@ -243,6 +303,12 @@ static uint32_t rows_of(const struct show *s)
     return s->radius != 0 ? 2u * s->radius + 1u : 0;
 }
 
+/* Samples of a layer, in lines and ring. */
+static size_t layer_of(const struct show *s)
+{
+    return (size_t)line_of(s) * lines_of(s) + (size_t)s->fetched * rows_of(s);
+}
+
 static void set_work(struct show *s, void *work)
 {
     s->span = work;
@@ -251,6 +317,8 @@ static void set_work(struct show *s, void *work)
         s->line[i] = to;
     s->ring = to;
     s->oldest = 0;
+    if (brume_has_colour(s->frame))
+        s->apart = (uint32_t)layer_of(s);
 }
 
 size_t brume_work_bytes(const struct brume_frame *frame, unsigned w)
@@ -268,9 +336,9 @@ size_t brume_work_bytes(const struct brume_frame *frame, unsigned w)
     s.columns = smaller(s.columns, frame->grid[0]);
     s.fetched = smaller(s.columns + 2u * s.radius, frame->grid[0]);
     /* < 2^21 */
-    return BRUME_SPAN * sizeof *s.span + ((size_t)line_of(&s) * lines_of(&s) +
-                                          (size_t)s.fetched * rows_of(&s)) *
-                                             sizeof **s.line;
+    size_t layers = brume_has_colour(frame) ? 2 : 1;
+    return BRUME_SPAN * sizeof *s.span +
+           layer_of(&s) * layers * sizeof **s.line;
 }
 
 /* Has the state what the frame needs? Without one, that is all the rays of
@@ -297,7 +365,7 @@ int brume_show_rect(const struct brume_frame *frame,
     if (frame == NULL || dst == NULL || work == NULL)
         return BRUME_ERR_NULL;
     const uint16_t image[2] = {frame->width, frame->height};
-    int err = brume_pixels_check(pixel_format, w, h, stride);
+    int err = brume_pixels_check(pixel_format, x, w, h, stride);
     if (err)
         return err;
     if (!brume_rect_fits(image, x, y, w, h))

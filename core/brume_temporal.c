@@ -81,24 +81,27 @@ static uint64_t plane_bytes(uint32_t rays, uint32_t each)
     return (bytes + 3u) & ~(uint64_t)3;
 }
 
-/* Offsets of the planes; returns the bytes of the whole. */
-static uint64_t lay_out(struct brume_state *s, const struct shape *shape)
+/* Offsets of the planes; returns the bytes of the whole. A plane has layer 0
+ * of all rays, then layer 1 of all; depths are of rays. */
+static uint64_t lay_out(struct brume_state *s, const struct shape *shape,
+                        uint32_t layers)
 {
     bool window = shape->temporal == BRUME_WINDOW;
     uint32_t planes = shape->temporal == BRUME_TEMPORAL_NONE ? 0
                       : shape->temporal == BRUME_TAA         ? 2
                                                              : 1;
-    uint32_t pair = shape->bits / 4u;
+    uint32_t pair = shape->bits / 4u, pairs = shape->grid * layers;
     uint64_t end = (sizeof *s + 3u) & ~(size_t)3;
     s->samples = (uint32_t)end;
     if (planes != 1)
-        end += plane_bytes(shape->lattice, sizeof(struct brume_sample));
+        end +=
+            plane_bytes(shape->lattice * layers, sizeof(struct brume_sample));
     s->sums = (uint32_t)end;
     if (window)
-        end += plane_bytes(shape->grid, 2u * pair);
+        end += plane_bytes(pairs, 2u * pair);
     for (uint32_t i = 0; i < planes; i++) {
         s->values[i] = (uint32_t)end;
-        end += plane_bytes(shape->grid, pair * (window ? shape->window : 1u));
+        end += plane_bytes(pairs, pair * (window ? shape->window : 1u));
         s->depth[i] = (uint32_t)end;
         end += shape->depth ? plane_bytes(shape->grid, 2) : 0;
     }
@@ -114,7 +117,23 @@ uint32_t brume_state_layout(const struct brume_frame *frame)
 #if BRUME_WITH_RESOLUTION
     layout |= (uint32_t)frame->resolution << 12;
 #endif
+#if BRUME_WITH_COLOUR
+    layout |= (uint32_t)frame->lit.colour << 14;
+#endif
+#if BRUME_WITH_LIGHTING /* a history of eighths is none of ones */
+    layout |= (uint32_t)frame->lit.light_log2 << 15;
+#endif
     return layout;
+}
+
+static bool scene_has_colour(const struct brume_scene *s)
+{
+#if BRUME_WITH_COLOUR
+    return brume_scene_has_colour(s);
+#else
+    (void)s;
+    return false;
+#endif
 }
 
 size_t brume_state_bytes(const struct brume_scene *scene)
@@ -132,7 +151,7 @@ size_t brume_state_bytes(const struct brume_scene *scene)
         0,           brume_scene_has_depth(s)};
     shape.lattice = brume_rays(x, brume_cell_log2(s->update, 0)) *
                     brume_rays(y, brume_cell_log2(s->update, 1));
-    uint64_t bytes = lay_out(&state, &shape);
+    uint64_t bytes = lay_out(&state, &shape, scene_has_colour(s) ? 2 : 1);
     return bytes > SIZE_MAX ? 0 : (size_t)bytes;
 }
 
@@ -162,10 +181,11 @@ int brume_begin_state(struct brume_state *state,
     if (s == NULL || frame == NULL)
         return BRUME_ERR_NULL;
     struct shape shape = shape_of(frame);
-    if (lay_out(&planes, &shape) > s->size)
+    uint32_t layers = brume_has_colour(frame) ? 2 : 1;
+    if (lay_out(&planes, &shape, layers) > s->size)
         return BRUME_ERR_STATE;
     bool fresh = frame->cut || !brume_state_fits(s, frame);
-    lay_out(s, &shape);
+    lay_out(s, &shape, layers);
     s->layout = brume_state_layout(frame);
     s->image[0] = frame->width;
     s->image[1] = frame->height;
@@ -197,9 +217,10 @@ static half_t *halves(const struct brume_state *s, uint32_t offset)
     return (half_t *)(void *)((uint8_t *)(uintptr_t)s + offset);
 }
 
-/* Light and transmittance number i of a plane, in 16 bits. */
-static void get_pair(const struct brume_state *s, uint32_t plane, uint32_t i,
-                     uint32_t bits, uint32_t pair[2])
+/* Light and transmittance number i of a plane, in 16 bits. Those of layer 1
+ * follow all of layer 0's. */
+BRUME_INLINE void get_pair(const struct brume_state *s, uint32_t plane,
+                           uint32_t i, uint32_t bits, uint32_t pair[2])
 {
     if (bits == 8) {
         const uint8_t *p = (const uint8_t *)s + plane + 2u * i;
@@ -213,8 +234,8 @@ static void get_pair(const struct brume_state *s, uint32_t plane, uint32_t i,
 }
 
 /* The same way back; `code` holds codes of the plane's bits. */
-static void put_pair(struct brume_state *s, uint32_t plane, uint32_t i,
-                     uint32_t bits, const uint32_t code[2])
+BRUME_INLINE void put_pair(struct brume_state *s, uint32_t plane, uint32_t i,
+                           uint32_t bits, const uint32_t code[2])
 {
     if (bits == 8) {
         uint8_t *p = (uint8_t *)s + plane + 2u * i;
@@ -235,14 +256,19 @@ static void get_sums(const struct brume_state *s, uint32_t i, uint32_t bits,
                            : words(s, s->sums)[2u * i + q];
 }
 
-static void put_sums(struct brume_state *s, uint32_t i, uint32_t bits,
-                     const uint32_t sum[2])
+BRUME_INLINE void put_sums(struct brume_state *s, uint32_t i, uint32_t bits,
+                           const uint32_t sum[2])
 {
     for (uint32_t q = 0; q < 2; q++)
         if (bits == 8)
             halves(s, s->sums)[2u * i + q] = (uint16_t)sum[q];
         else
             words(s, s->sums)[2u * i + q] = sum[q];
+}
+
+static uint32_t grid_of(const struct brume_frame *f)
+{
+    return (uint32_t)f->grid[0] * f->grid[1];
 }
 
 static void get_depth(const struct brume_frame *f, const struct brume_state *s,
@@ -260,15 +286,25 @@ static void get_depth(const struct brume_frame *f, const struct brume_state *s,
 #endif
 }
 
+BRUME_INLINE void history_get(const struct brume_frame *f,
+                              const struct brume_state *s, uint32_t plane,
+                              uint32_t i, struct brume_sample *out,
+                              uint32_t layer)
+{
+    uint32_t pair[2];
+    get_pair(s, s->values[plane], layer * grid_of(f) + i, f->history_bits,
+             pair);
+    out->light = (uint16_t)pair[0];
+    out->transmittance = (uint16_t)pair[1];
+    if (layer == 0)
+        get_depth(f, s, plane, i, out);
+}
+
 void brume_history_get(const struct brume_frame *frame,
                        const struct brume_state *state, uint32_t plane,
                        uint32_t i, struct brume_sample *out)
 {
-    uint32_t pair[2];
-    get_pair(state, state->values[plane], i, frame->history_bits, pair);
-    out->light = (uint16_t)pair[0];
-    out->transmittance = (uint16_t)pair[1];
-    get_depth(frame, state, plane, i, out);
+    history_get(frame, state, plane, i, out, 0);
 }
 
 /* A depth between two, h + alpha (s - h). Where one has none, the other: a
@@ -299,51 +335,62 @@ static void put_depth(const struct brume_frame *f, struct brume_state *s,
 #endif
 }
 
+BRUME_INLINE void history_put(const struct brume_frame *f,
+                              struct brume_state *s, uint32_t plane, uint32_t x,
+                              uint32_t y, const struct brume_sample *old,
+                              const struct brume_sample *in, uint32_t alpha,
+                              uint32_t layer)
+{
+    uint32_t i = y * f->grid[0] + x;
+    uint32_t v[2] = {in->light, in->transmittance};
+    const uint32_t h[2] = {old->light, old->transmittance};
+    for (uint32_t q = 0; q < 2; q++) {
+        uint32_t r = dither(x, y, f->frame, layer == 0 ? q : 0);
+        v[q] = blend(h[q], v[q], alpha, f->history_bits == 8 ? 0x8000u : r);
+        if (f->history_bits == 8)
+            v[q] = to_8_bits(v[q], r);
+    }
+    put_pair(s, s->values[plane], layer * grid_of(f) + i, f->history_bits, v);
+    if (layer == 0)
+        put_depth(f, s, plane, i,
+                  blend_depth(old->depth, in->depth, alpha,
+                              dither(x, y, f->frame, 2),
+                              v[1] == (f->history_bits == 8 ? 255u : 65535u)));
+}
+
 void brume_history_put(const struct brume_frame *frame,
                        struct brume_state *state, uint32_t plane, uint32_t x,
                        uint32_t y, const struct brume_sample *old,
                        const struct brume_sample *in, uint32_t alpha)
 {
-    const struct brume_frame *f = frame;
-    uint32_t i = y * f->grid[0] + x;
-    uint32_t v[2] = {in->light, in->transmittance};
-    const uint32_t h[2] = {old->light, old->transmittance};
-    for (uint32_t q = 0; q < 2; q++) {
-        uint32_t r = dither(x, y, f->frame, q);
-        v[q] = blend(h[q], v[q], alpha, f->history_bits == 8 ? 0x8000u : r);
-        if (f->history_bits == 8)
-            v[q] = to_8_bits(v[q], r);
-    }
-    put_pair(state, state->values[plane], i, f->history_bits, v);
-    put_depth(f, state, plane, i,
-              blend_depth(old->depth, in->depth, alpha,
-                          dither(x, y, f->frame, 2),
-                          v[1] == (f->history_bits == 8 ? 255u : 65535u)));
+    history_put(frame, state, plane, x, y, old, in, alpha, 0);
 }
 
 /// Window ///
 
 /* Adds the ray to its window, as number `count` that it has seen, from 0. */
-static void window_put(const struct brume_frame *f, struct brume_state *s,
-                       uint32_t x, uint32_t y, uint32_t count,
-                       const struct brume_sample *in)
+BRUME_INLINE void window_put(const struct brume_frame *f, struct brume_state *s,
+                             uint32_t x, uint32_t y, uint32_t count,
+                             const struct brume_sample *in, uint32_t layer)
 {
     uint32_t i = y * f->grid[0] + x, bits = f->history_bits;
-    uint32_t rays = (uint32_t)f->grid[0] * f->grid[1];
-    uint32_t slot = (count % f->window) * rays + i;
+    uint32_t rays = grid_of(f), at = layer * rays + i;
+    uint32_t slot = (layer * f->window + count % f->window) * rays + i;
     uint32_t v[2] = {in->light, in->transmittance}, sum[2] = {0, 0};
     uint32_t old[2] = {0, 0};
     if (bits == 8)
         for (uint32_t q = 0; q < 2; q++)
-            v[q] = to_8_bits(v[q], dither(x, y, f->frame, q));
+            v[q] = to_8_bits(v[q], dither(x, y, f->frame, layer == 0 ? q : 0));
     if (count > 0)
-        get_sums(s, i, bits, sum);
+        get_sums(s, at, bits, sum);
     if (count >= f->window)
         get_pair(s, s->values[0], slot, bits, old);
     for (uint32_t q = 0; q < 2; q++)
         sum[q] += v[q] - (bits == 8 ? old[q] / 257u : old[q]);
-    put_sums(s, i, bits, sum);
+    put_sums(s, at, bits, sum);
     put_pair(s, s->values[0], slot, bits, v);
+    if (layer != 0)
+        return;
     struct brume_sample before;
     get_depth(f, s, 0, i, &before);
     put_depth(f, s, 0, i,
@@ -354,12 +401,14 @@ static void window_put(const struct brume_frame *f, struct brume_state *s,
 
 /* The mean of `count` frames, rounded to nearest. sum < 2^20, so that the
  * quotient by the reciprocal, which is up to 1/2^32 too large, is exact. */
-static void window_get(const struct brume_frame *f, const struct brume_state *s,
-                       uint32_t i, uint32_t count, struct brume_sample *out)
+BRUME_INLINE void window_get(const struct brume_frame *f,
+                             const struct brume_state *s, uint32_t i,
+                             uint32_t count, struct brume_sample *out,
+                             uint32_t layer)
 {
     uint32_t sum[2], n = count < f->window ? count : f->window;
     uint32_t inverse = 0xffffffffu / n + 1u; /* n = 1: 0, and 2^32 is meant */
-    get_sums(s, i, f->history_bits, sum);
+    get_sums(s, layer * grid_of(f) + i, f->history_bits, sum);
     for (uint32_t q = 0; q < 2; q++) {
         if (f->history_bits == 8)
             sum[q] *= 257u;
@@ -368,7 +417,8 @@ static void window_get(const struct brume_frame *f, const struct brume_state *s,
     }
     out->light = (uint16_t)sum[0];
     out->transmittance = (uint16_t)sum[1];
-    get_depth(f, s, 0, i, out);
+    if (layer == 0)
+        get_depth(f, s, 0, i, out);
 }
 
 /// Turns ///
@@ -387,8 +437,8 @@ uint32_t brume_age_of(const struct brume_frame *frame, uint32_t x, uint32_t y)
 
 /* How often a ray was marched since the cut, up to and with this frame, whose
  * turn was `age` frames ago. */
-static uint32_t visits_of(const struct brume_frame *f,
-                          const struct brume_state *s, uint32_t age)
+BRUME_INLINE uint32_t visits_of(const struct brume_frame *f,
+                                const struct brume_state *s, uint32_t age)
 {
     if (age > s->frames)
         return 0;
@@ -406,72 +456,134 @@ uint32_t brume_lattice_index(const struct brume_frame *frame, uint32_t x,
 
 /* What ray (x, y) of the grid gets. One that had no turn yet takes its cell's
  * ray for the time being. */
-static void put_ray(const struct brume_frame *f, struct brume_state *s,
-                    uint32_t x, uint32_t y, uint32_t age,
-                    const struct brume_sample *in)
+BRUME_INLINE void put_in(const struct brume_frame *f, struct brume_state *s,
+                         uint32_t x, uint32_t y, uint32_t age,
+                         const struct brume_sample *in, uint32_t layer)
 {
     uint32_t visits = visits_of(f, s, age);
     struct brume_sample old = *in;
     if (visits > 0 && age > 0)
         return;
     if (f->temporal == BRUME_WINDOW) {
-        window_put(f, s, x, y, visits > 0 ? visits - 1u : 0, in);
+        window_put(f, s, x, y, visits > 0 ? visits - 1u : 0, in, layer);
         return;
     }
     if (visits > 1)
-        brume_history_get(f, s, 0, y * f->grid[0] + x, &old);
-    brume_history_put(f, s, 0, x, y, &old, in, f->alpha);
+        brume_layer_get(f, s, 0, y * f->grid[0] + x, &old, layer);
+    brume_layer_put(f, s, 0, x, y, &old, in, f->alpha, layer);
 }
 
+static void put_ray(const struct brume_frame *f, struct brume_state *s,
+                    uint32_t x, uint32_t y, uint32_t age,
+                    const struct brume_sample *in)
+{
+    put_in(f, s, x, y, age, in, 0);
+}
+
+#if BRUME_WITH_COLOUR
+static void put_colours(const struct brume_frame *f, struct brume_state *s,
+                        uint32_t x, uint32_t y, uint32_t age,
+                        const struct brume_sample *in)
+{
+    put_in(f, s, x, y, age, in, 1);
+}
+#else
+#define put_colours put_ray /* there is no layer 1 */
+#endif
+
 /* All rays of the grid in cell (x, y) of the lattice. */
-static void put_cell(const struct brume_frame *f, struct brume_state *s,
-                     uint32_t x, uint32_t y, const struct brume_sample *in)
+BRUME_INLINE void put_cell(const struct brume_frame *f, struct brume_state *s,
+                           uint32_t x, uint32_t y,
+                           const struct brume_sample *in, uint32_t layer)
 {
     uint32_t across = 1u << f->cell_log2[0], down = 1u << f->cell_log2[1];
     x <<= f->cell_log2[0];
     y <<= f->cell_log2[1];
     for (uint32_t j = 0; j < down && y + j < f->grid[1]; j++)
         for (uint32_t i = 0; i < across && x + i < f->grid[0]; i++)
-            put_ray(f, s, x + i, y + j, brume_age_of(f, x + i, y + j), in);
+            (layer == 1 ? put_colours : put_ray)(
+                f, s, x + i, y + j, brume_age_of(f, x + i, y + j), in);
+}
+
+BRUME_INLINE void store(const struct brume_frame *f, struct brume_state *s,
+                        uint32_t x, uint32_t y, uint32_t n,
+                        const struct brume_radiance *in, uint32_t layer)
+{
+    const uint32_t log2 = brume_light_log2(f);
+    bool kept = f->temporal == BRUME_EMA || f->temporal == BRUME_WINDOW;
+    for (uint32_t i = 0; i < n; i++) {
+        struct brume_sample sample = brume_sample_from(&in[i], log2, layer);
+        if (kept && f->update == BRUME_UPDATE_ALL)
+            (layer == 1 ? put_colours : put_ray)(f, s, x + i, y, 0, &sample);
+        else if (kept)
+            put_cell(f, s, x + i, y, &sample, layer);
+        else
+            *brume_sample_at(f, s, y * f->lattice[0] + x + i, layer) = sample;
+    }
 }
 
 void brume_store_span(const struct brume_frame *frame,
                       struct brume_state *state, uint32_t x, uint32_t y,
                       uint32_t n, const struct brume_radiance *in)
 {
-    const struct brume_frame *f = frame;
-    bool kept = f->temporal == BRUME_EMA || f->temporal == BRUME_WINDOW;
-    for (uint32_t i = 0; i < n; i++) {
-        struct brume_sample sample = brume_sample_from(&in[i]);
-        if (kept && f->update == BRUME_UPDATE_ALL)
-            put_ray(f, state, x + i, y, 0, &sample);
-        else if (kept)
-            put_cell(f, state, x + i, y, &sample);
-        else
-            *brume_sample_at(state, y * f->lattice[0] + x + i) = sample;
-    }
+    store(frame, state, x, y, n, in, 0);
+    if (brume_has_colour(frame))
+        store(frame, state, x, y, n, in, 1);
 }
 
 /// Rays out ///
+
+BRUME_INLINE void history_row(const struct brume_frame *f,
+                              const struct brume_state *s, uint32_t x,
+                              uint32_t y, uint32_t n, struct brume_sample *out,
+                              uint32_t layer)
+{
+    uint32_t taa = f->temporal == BRUME_TAA ? s->now : 0;
+    for (uint32_t i = 0; i < n; i++) {
+        uint32_t at = y * f->grid[0] + x + i;
+        if (f->temporal == BRUME_TEMPORAL_NONE) {
+            out[i] =
+                *brume_sample_at(f, s, brume_lattice_index(f, x + i, y), layer);
+        } else if (f->temporal == BRUME_WINDOW) {
+            uint32_t visits = visits_of(f, s, brume_age_of(f, x + i, y));
+            window_get(f, s, at, visits > 0 ? visits : 1, &out[i], layer);
+        } else {
+            brume_layer_get(f, s, taa, at, &out[i], layer);
+        }
+    }
+}
 
 void brume_history_row(const struct brume_frame *frame,
                        const struct brume_state *state, uint32_t x, uint32_t y,
                        uint32_t n, struct brume_sample *out)
 {
-    const struct brume_frame *f = frame;
-    const struct brume_state *s = state;
-    uint32_t taa = f->temporal == BRUME_TAA ? s->now : 0;
-    for (uint32_t i = 0; i < n; i++) {
-        uint32_t at = y * f->grid[0] + x + i;
-        if (f->temporal == BRUME_TEMPORAL_NONE) {
-            out[i] = *brume_sample_at(s, brume_lattice_index(f, x + i, y));
-        } else if (f->temporal == BRUME_WINDOW) {
-            uint32_t visits = visits_of(f, s, brume_age_of(f, x + i, y));
-            window_get(f, s, at, visits > 0 ? visits : 1, &out[i]);
-        } else {
-            brume_history_get(f, s, taa, at, &out[i]);
-        }
-    }
+    history_row(frame, state, x, y, n, out, 0);
 }
+
+/// Layer 1 ///
+
+#if BRUME_WITH_COLOUR
+void brume_colours_get(const struct brume_frame *frame,
+                       const struct brume_state *state, uint32_t plane,
+                       uint32_t i, struct brume_sample *out)
+{
+    history_get(frame, state, plane, i, out, 1);
+}
+
+void brume_colours_put(const struct brume_frame *frame,
+                       struct brume_state *state, uint32_t plane, uint32_t x,
+                       uint32_t y, const struct brume_sample *old,
+                       const struct brume_sample *in, uint32_t alpha)
+{
+    history_put(frame, state, plane, x, y, old, in, alpha, 1);
+}
+
+void brume_colours_row(const struct brume_frame *frame,
+                       const struct brume_state *state, uint32_t x, uint32_t y,
+                       uint32_t n, struct brume_sample *out)
+{
+    history_row(frame, state, x, y, n, out, 1);
+}
+#endif
 
 #endif

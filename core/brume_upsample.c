@@ -41,11 +41,12 @@ struct brume_between brume_between(const struct brume_frame *frame,
 
 /* The mean of rays p, nearest first, with weights in Q0.16: the nearest has
  * more than 1/4, and all sum to 1 or, by likeness, to less. */
-static void blend(struct brume_radiance *out,
-                  const struct brume_sample *const p[4],
-                  const uint32_t weight[4], bool aware)
+BRUME_INLINE void blend(struct brume_radiance *out,
+                        const struct brume_sample *const p[4],
+                        const uint32_t weight[4], bool aware, uint32_t log2,
+                        bool colour, uint32_t apart)
 {
-    uint32_t light = 0, transmittance = 0, sum = 0;
+    uint32_t light = 0, transmittance = 0, sum = 0, green = 0, blue = 0;
     for (int i = 0; i < 4; i++) {
         uint32_t w = weight[i];
         if (aware && i > 0)
@@ -56,17 +57,31 @@ static void blend(struct brume_radiance *out,
         light += w * p[i]->light;
         transmittance += w * p[i]->transmittance;
         sum += w;
+        if (colour) {
+            green += w * p[i][apart].light;
+            blue += w * p[i][apart].transmittance;
+        }
     }
-    out->light = of_sample(brume_mean_of(light, sum));
+    out->light = light_of_sample(brume_mean_of(light, sum), log2);
     out->transmittance = of_sample(brume_mean_of(transmittance, sum));
+#if BRUME_WITH_COLOUR
+    if (colour) {
+        out->green = light_of_sample(brume_mean_of(green, sum), log2);
+        out->blue = light_of_sample(brume_mean_of(blue, sum), log2);
+    }
+#else
+    (void)green, (void)blue;
+#endif
 }
 
-void brume_upsample_span(const struct brume_frame *frame,
-                         const struct brume_sample *above,
-                         const struct brume_sample *below, uint32_t first,
-                         uint32_t below_weight, uint32_t x, uint32_t n,
-                         struct brume_radiance *out)
+BRUME_INLINE void upsample(const struct brume_frame *frame,
+                           const struct brume_sample *above,
+                           const struct brume_sample *below, uint32_t first,
+                           uint32_t below_weight, uint32_t x, uint32_t n,
+                           struct brume_radiance *out, bool colour,
+                           uint32_t apart)
 {
+    const uint32_t log2 = brume_light_log2(frame);
     const bool aware = frame->upsample == BRUME_UPSAMPLE_AWARE;
     const uint32_t r = frame->resolution, one = 2u << r;
     /* The nearer row's share of Q0.16 / one; more than half of one */
@@ -86,8 +101,28 @@ void brume_upsample_span(const struct brume_frame *frame,
                                                  row2 + here, row2 + there};
         const uint32_t w[4] = {u * near, (one - u) * near, u * far,
                                (one - u) * far};
-        blend(&out[i], p, w, aware);
+        blend(&out[i], p, w, aware, log2, colour, apart);
     }
 }
+
+void brume_upsample_span(const struct brume_frame *frame,
+                         const struct brume_sample *above,
+                         const struct brume_sample *below, uint32_t first,
+                         uint32_t below_weight, uint32_t x, uint32_t n,
+                         struct brume_radiance *out)
+{
+    upsample(frame, above, below, first, below_weight, x, n, out, false, 0);
+}
+
+#if BRUME_WITH_COLOUR
+void brume_upsample_colours(const struct brume_frame *frame,
+                            const struct brume_sample *above,
+                            const struct brume_sample *below, uint32_t first,
+                            uint32_t below_weight, uint32_t x, uint32_t n,
+                            struct brume_radiance *out, uint32_t apart)
+{
+    upsample(frame, above, below, first, below_weight, x, n, out, true, apart);
+}
+#endif
 
 #endif

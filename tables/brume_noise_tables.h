@@ -35,6 +35,10 @@ extern const struct brume_noise_table brume_noise_white8; /* 8x8x16 */
  * BRUME_NOISE_BAYER8 needs no table. */
 extern const struct brume_noise_table brume_noise_bayer8;
 
+/* Directions of the upper hemisphere, for BRUME_SKY_SAMPLED; 32x32x16, 48 KiB.
+ */
+extern const struct brume_direction_table brume_noise_hemisphere;
+
 /* N-rooks sets of 1 .. 16 points in their order of use: 16 row + column. */
 extern const uint8_t brume_nrooks[16][16];
 

@@ -184,6 +184,15 @@ test_scenes()
 bar"
     check "log with 17 samples" no_picture 2 'log takes up to 16' \
         "$volume" --set light=log --set light_samples=17
+    check "cone without mips" no_picture 2 \
+        '--set: light = cone needs a volume that was baked with --mips' \
+        "$volume" --set light=cone
+    check "a phase function that is none" no_picture 2 \
+        '--set: phase is one of isotropic hg:G' "$volume" --set phase=mie
+    printf 'octaves = 8\n\nphase = droplet:60\n' >"$work/phase.scene"
+    check "a droplet too large, by file and line" no_picture 2 \
+        'phase\.scene:3: phase: MICROMETRES of droplet is 60, outside' \
+        "$volume" --scene "$work/phase.scene"
     wide=$(hash_of --set fov=60)
     echo 'fov = 60' >"$work/wide.scene"
     check "a scene and --set say the same" \
@@ -321,6 +330,148 @@ test_pictures()
         at_most 10 "$(measure rmse clear.png colour.png)"
 }
 
+## Panels
+
+# codes FILE: how many different bytes the samples of an 80x60 .pgm or .ppm have
+codes()
+{
+    tail -c "$((80 * 60 * $2))" "$work/$1" | od -An -v -tu1 |
+        tr -s " " "\n" | sort -u | grep -c .
+}
+
+# narrow FORMAT EXTENSION CHANNELS CODES...: a picture of so many codes, at
+# most, and not the one of another
+narrow()
+{
+    renders "$1.$2" --pixels "$1" --set dither=on &&
+        [ "$(codes "$1.$2" "$3")" -le "$4" ] &&
+        [ "$(codes "$1.$2" "$3")" -gt "$5" ]
+}
+
+# The mean difference without its sign
+mean_of()
+{
+    measure mean "$1" "$2" | sed 's/-//'
+}
+
+test_panels()
+{
+    check "--pixels rgb332 has 8 codes a channel" narrow rgb332 ppm 3 12 4
+    check "--pixels rgb565 has up to 64" narrow rgb565 ppm 3 96 8
+    check "--pixels l4 has 16 greys" narrow l4 pgm 1 16 4
+    check "--pixels l2 has 4" narrow l2 pgm 1 4 2
+    check "--pixels l1 has 2" narrow l1 pgm 1 2 1
+    # Dithering keeps the mean of light, so of linear codes.
+    renders l8.pgm --pixels l8 --set output=linear
+    for format in l4 l2 l1; do
+        renders $format.pgm --pixels $format --set dither=on \
+            --set output=linear
+        check "$format keeps the mean of l8" \
+            at_most "$(mean_of $format.pgm l8.pgm)" 1
+    done
+    check "--pixels rgb888 is what there is without" \
+        same_hash "$(hash_of)" "$(hash_of --pixels rgb888)"
+    check "1 thread or 7, the same dither" same_hash \
+        "$(hash_of --pixels l1 --set dither=on --threads 1)" \
+        "$(hash_of --pixels l1 --set dither=on --threads 7)"
+    check "--pixels rgba8888" renders rgba.png --pixels rgba8888
+    check "is a PNG with alpha" [ \
+        "$(od -An -tu1 -j25 -N1 "$work/rgba.png" | tr -d ' ')" = 6 ]
+    check "no other file has alpha" fails 2 'rgba8888 goes into .png' \
+        "$brume" render "$volume" $small --pixels rgba8888 -o "$none/a.ppm"
+    check "no panel shows floats" fails 2 'not of a .pfm' \
+        "$brume" render "$volume" $small --pixels l1 -o "$none/a.pfm"
+    check "--pixels of another name" no_picture 2 \
+        '--pixels is one of rgb888 .*, not grey' "$volume" --pixels grey
+}
+
+## Light
+
+# brighter A B: the mean of picture A is above B's
+brighter() { at_most 0.5 "$(measure mean "$2" "$1")"; }
+
+test_light()
+{
+    sky="--set sky=on --set output=filmic"
+    check "a sky" renders sky.png $sky
+    check "octaves and droplets" renders octaves.png $sky \
+        --set octaves=8 --set phase=droplet:10
+    renders first.png $sky --set phase=droplet:10
+    check "octaves add light" brighter octaves.png first.png
+    check "ambient light" renders ambient.png $sky --set ambient=gradient
+    check "adds more" brighter ambient.png sky.png
+    check "what sees little of the sky gets less" renders sampled.png $sky \
+        --set ambient=gradient --set visibility=sampled
+    check "than all of it" brighter ambient.png sampled.png
+    check "haze" renders haze.png $sky --set haze=40
+    renders clear_sky.png $sky --set density_scale=0
+    check "fades the cloud into the sky" at_most \
+        "$(measure rmse haze.png clear_sky.png)" \
+        "$(measure rmse sky.png clear_sky.png)"
+    check "filter = stochastic" renders stochastic.png --set filter=stochastic
+    renders trilinear.png --set filter=trilinear
+    check "is trilinear on average" at_most \
+        "$(mean_of stochastic.png trilinear.png)" 2
+    check "light = cache" renders cache.png --set light=cache
+    check "is the light it was made of" at_most \
+        "$(measure rmse cache.png trilinear.png)" 8
+    check "with spacing 2 too" renders cache2.png --set light=cache \
+        --set cache_spacing=2
+    for word in phase=isotropic octaves=1 ambient=none haze=0 sky=off \
+        exposure=1; do
+        check "$word changes nothing" same_hash "$(hash_of)" \
+            "$(hash_of --set $word)"
+    done
+    check "every kernel gives it alike" same_hash \
+        "$(hash_of $sky --kernel scalar)" "$(hash_of $sky --kernel auto)"
+    check "light is the same on 1 thread and 7" same_hash \
+        "$(hash_of $sky --set light=cache --set haze=40 --threads 1)" \
+        "$(hash_of $sky --set light=cache --set haze=40 --threads 7)"
+}
+
+## What is baked for light
+
+# on_lit COMMAND...: with the volume that has it
+on_lit()
+{
+    plain_volume=$volume
+    volume=$work/lit.brume
+    "$@"
+    result=$?
+    volume=$plain_volume
+    return $result
+}
+
+test_baked_light()
+{
+    sky="--set sky=on --set output=filmic --set ambient=gradient"
+    sun="--set sun=20,50 --set light=cache"
+    fine="--set light=cache --set light_samples=64"
+    check "what was baked for light changes nothing else" \
+        same_hash "$(hash_of)" "$(on_lit hash_of)"
+    check "light = cone" on_lit renders cone.png --set light=cone
+    check "is near the uniform one" at_most \
+        "$(measure rmse cone.png trilinear.png)" 12
+    check "visibility = baked" on_lit renders baked.png $sky \
+        --set visibility=baked
+    check "is near the sampled one" at_most \
+        "$(measure rmse baked.png sampled.png)" 12
+    check "a baked cache" on_lit renders baked_cache.png --set light=cache
+    renders cache2.png $fine --set cache_spacing=2
+    renders cache4.png $fine --set cache_spacing=4
+    check "is near one that is computed" at_most \
+        "$(measure rmse baked_cache.png cache2.png)" 1
+    check "nearer than that of every fourth voxel" at_most \
+        "$(measure rmse baked_cache.png cache2.png)" \
+        "$(measure rmse baked_cache.png cache4.png)"
+    check "for another sun it is not used" \
+        same_hash "$(hash_of $sun)" "$(on_lit hash_of $sun)"
+    check "nor for another spacing" \
+        same_hash "$(hash_of $fine --set cache_spacing=4)" \
+        "$(on_lit hash_of $fine --set cache_spacing=4)"
+}
+
+
 test_threads()
 {
     one=$(hash_of --threads 1)
@@ -341,7 +492,8 @@ test_threads()
 ## info
 
 info_names="name format apron bytes cells occupied_cells bricks pool_bytes \
-voxels box_voxels box_world origin voxel_size density_max density_mean"
+voxels box_voxels box_world origin voxel_size density_max density_mean \
+mips sun_cache sky_visibility"
 
 has_line()
 {
@@ -361,6 +513,11 @@ test_info()
     check "the largest density" has_line 'density_max=(1|0\.[0-9]+)'
     runs "$brume" info "$work/apron.brume"
     check "an apron" has_line 'apron=yes'
+    check "no mips, no cache" has_line 'mips=no|sun_cache=0'
+    runs "$brume" info "$work/lit.brume"
+    check "mips" has_line 'mips=yes'
+    check "a cache of every second voxel" has_line 'sun_cache=2'
+    check "visibility of the sky" has_line 'sky_visibility=yes'
 }
 
 # The scene that info prints is the one that render takes by itself.
@@ -438,6 +595,9 @@ check "a cloud is modelled and baked" \
 check "with an apron" make apron "--size 40" "--apron"
 check "in u8" make u8 "--size 40 --type plume" "--format u8"
 check "in u4r" make u4r "--size 40 --seed 3" "--format u4r"
+check "with all for light" make lit "--size 48 --voxel-size 0.5" \
+    "--format u8r --mips --sun-cache 2 --sun -60,30 --sky-visibility \
+--sky-extinction 0.3"
 check "a sphere" make sphere "--size 24 --type sphere" ""
 check "a single voxel" make voxel "--size 16 --type voxel" ""
 check "a picture with no scene at all" \
@@ -452,6 +612,9 @@ test_scenes
 test_output_errors
 test_full_stdout
 test_pictures
+test_panels
+test_light
+test_baked_light
 test_threads
 test_info
 test_info_scene

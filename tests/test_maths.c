@@ -616,10 +616,10 @@ static void test_srgb_table(void)
 /* One value through brume_pack_span, over a black background. */
 static uint32_t packed(struct brume_frame *f, uint32_t linear, int format)
 {
-    struct brume_radiance in = {linear, 0x10000u, 0};
+    struct brume_radiance in = {.light = linear, .transmittance = 0x10000u};
     uint8_t bytes[8] = {0};
     uint16_t word;
-    brume_pack_span(f, &in, 1, format, bytes);
+    brume_pack_span(f, 0, 0, &in, 1, format, bytes);
     if (format == BRUME_L8)
         return bytes[0];
     memcpy(&word, bytes, sizeof word);
@@ -676,11 +676,12 @@ static void test_composition(void)
     for (uint32_t i = 0; i < 500000; i++) {
         uint32_t t = i < EDGES ? edge(i) % 65537 : random_word() % 65537;
         uint32_t b = i % 7 ? random_word() % 65537 : 65536 - i % 2;
-        struct brume_radiance in = {random_magnitude() % 65537, t, 0};
+        struct brume_radiance in = {.light = random_magnitude() % 65537,
+                                    .transmittance = t};
         uint64_t sum = in.light + (((uint64_t)t * b + 0x8000u) >> 16);
         uint16_t got;
         f.background[0] = b;
-        brume_pack_span(&f, &in, 1, BRUME_L16, &got);
+        brume_pack_span(&f, 0, 0, &in, 1, BRUME_L16, &got);
         wrong += got != (sum < 65535 ? sum : 65535);
     }
     tap_check(wrong == 0, "composition: L + T * background, rounded");

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "brume_noise_tables.h"
 #include "space_points.h"
 #include "tap.h"
 
@@ -287,6 +288,35 @@ static void test_texture(enum noise_space space, uint32_t expected)
     noise_texture_free(&t);
 }
 
+/* The committed directions: of length 1 and above the horizon to what a byte
+ * can say, each frame's mean half way up, as that of a hemisphere is. */
+static void test_hemisphere(void)
+{
+    const struct brume_direction_table *t = &brume_noise_hemisphere;
+    const uint32_t count = 1u << (t->width_log2 + t->height_log2);
+    double longest = 0, shortest = 9, off = 0;
+    int below = 0;
+
+    for (uint32_t frame = 0; frame < 1u << t->frames_log2; frame++) {
+        const int8_t *v = t->values + (size_t)3 * count * frame;
+        double sum[3] = {0, 0, -0.5};
+        for (uint32_t i = 0; i < count; i++, v += 3) {
+            double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / 128;
+            longest = fmax(longest, length);
+            shortest = fmin(shortest, length);
+            below += v[2] < 0;
+            for (int axis = 0; axis < 3; axis++)
+                sum[axis] += v[axis] / 128.0 / count;
+        }
+        for (int axis = 0; axis < 3; axis++)
+            off = fmax(off, fabs(sum[axis]));
+    }
+    tap_check(below == 0 && longest < 1.01 && shortest > 0.985,
+              "the committed hemisphere: lengths %.4f to %.4f, %d below",
+              shortest, longest, below);
+    tap_check(off < 0.005, "its frames' means are (0, 0, 1/2) to %.4f", off);
+}
+
 int main(void)
 {
     static const uint32_t expected[spaces] = {
@@ -306,5 +336,6 @@ int main(void)
     test_distances();
     for (int space = 0; space < spaces; space++)
         test_texture((enum noise_space)space, expected[space]);
+    test_hemisphere();
     return tap_done();
 }

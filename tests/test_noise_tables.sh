@@ -375,5 +375,16 @@ check "a spectrum" [ -s "$work/s.png" ]
 check "three bytes per vector" bytes "$work/a.raw" 1536
 "$noise" nrooks -o "$work/rooks.c"
 check "nrooks has a C form" [ -s "$work/rooks.c" ]
+directions_in_c()
+{
+    "$noise" fast --size 8x8x2 --filter box3 --space sphere \
+        -o "$work/way.c" &&
+        grep -q 'const int8_t k_values\[384\]' "$work/way.c" &&
+        grep -q 'brume_direction_table brume_way = .k_values, 3, 3, 1};' \
+            "$work/way.c"
+}
+check "directions have a C form, three bytes each" directions_in_c
+check "points have none" refuses 2 'points have no C form' fast --space vec2 \
+    -o "$none/a.c"
 check "nrooks is no texture" refuses 2 'only -o' nrooks $to
 finish

@@ -141,6 +141,33 @@ static void test_vectors(void)
     path_free(path);
 }
 
+/* Colours go beyond 1, phase functions hold. */
+static void test_light(void)
+{
+    struct path *path =
+        read_text("[0]\nsun_colour = 16,2,0\nphase = hg:0.5\nhaze = 100\n"
+                  "octaves = 1\nsky = off\n"
+                  "[4]\nsun_colour = 0,4,8\nphase = mix:0.5,2,0.1,0.9\n"
+                  "haze = 300\noctaves = 8\nsky = on\n");
+    const double *c = value_at(path, SCENE_SUN_COLOUR, 1);
+    tap_check(path != NULL && c[0] == 12 && c[1] == 2.5 && c[2] == 2,
+              "the sun's colour moves in three numbers");
+    tap_check(is_value(path, SCENE_HAZE, 1, 150) &&
+                  is_value(path, SCENE_OCTAVES, 1, 3) &&
+                  is_value(path, SCENE_SKY, 3, 0),
+              "so do haze and octaves, and a sky comes at once");
+    bool good = true;
+    for (uint32_t frame = 0; frame < 6; frame++) {
+        static const double k_hg[SCENE_VALUES] = {1, 0.5};
+        static const double k_mix[SCENE_VALUES] = {5, 0.5, 2, 0.1, 0.9};
+        good = memcmp(value_at(path, SCENE_PHASE, frame),
+                      frame < 4 ? k_hg : k_mix, sizeof k_hg) == 0 &&
+               good;
+    }
+    tap_check(good, "a phase function holds until the next");
+    path_free(path);
+}
+
 static void test_whole_and_words(void)
 {
     static const struct wanted k_whole[] = {{0, 4}, {1, 5}, {2, 5}, {3, 6}};
@@ -316,6 +343,7 @@ int main(void)
     test_smooth();
     test_spline();
     test_vectors();
+    test_light();
     test_whole_and_words();
     test_cut();
     test_where();

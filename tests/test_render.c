@@ -266,7 +266,7 @@ static void check_formats(const struct test_volumes *volumes)
     tap_check(bad[2] == 0, "RGB565 swapped is RGB565 with bytes swapped");
     tap_check(bad[3] == 0, "L8 and L16 are the red channel");
     tap_check(bad[4] == 0, "8-bit channels are the 16-bit ones to half a code");
-    tap_check(brume_pixel_bytes(-1) == 0 && brume_pixel_bytes(7) == 0,
+    tap_check(brume_pixel_bytes(-1) == 0 && brume_pixel_bytes(12) == 0,
               "no pixel format before and after the last");
 }
 
@@ -327,7 +327,7 @@ static void check_scene_limits(const struct test_volumes *volumes)
     EXPECT(s.light_samples = BRUME_MAX_LOG_SAMPLES + 1, BRUME_ERR_SAMPLES);
     EXPECT((s.light = 1, s.light_samples = 4096), BRUME_OK);
     EXPECT((s.light = 1, s.light_samples = 4097), BRUME_ERR_SAMPLES);
-    EXPECT(s.light = 3, BRUME_ERR_SAMPLES);
+    EXPECT(s.light = 5, BRUME_ERR_SAMPLES);
     EXPECT(s.fov = BRUME_MIN_FOV - 1, BRUME_ERR_CAMERA);
     EXPECT(s.fov = BRUME_MAX_FOV + 1, BRUME_ERR_CAMERA);
     EXPECT(s.eye[1] = BRUME_MAX_COORDINATE + 1, BRUME_ERR_CAMERA);
@@ -340,15 +340,95 @@ static void check_scene_limits(const struct test_volumes *volumes)
     EXPECT(s.albedo = 0x10001, BRUME_ERR_SCENE);
     EXPECT(s.min_transmittance = 0x10001, BRUME_ERR_SCENE);
     EXPECT(s.background[2] = 0x10001, BRUME_ERR_SCENE);
-    EXPECT(s.filter = 2, BRUME_ERR_SCENE);
+    EXPECT(s.filter = 3, BRUME_ERR_SCENE);
     EXPECT(s.jitter = 4, BRUME_ERR_SCENE);
     EXPECT(s.noise = 11, BRUME_ERR_SCENE);
-    EXPECT(s.output = 2, BRUME_ERR_SCENE);
+    EXPECT(s.output = 3, BRUME_ERR_SCENE);
 #undef EXPECT
     tap_check(brume_begin_frame(NULL, v, &good) == BRUME_ERR_NULL &&
                   brume_begin_frame(&f, NULL, &good) == BRUME_ERR_NULL &&
                   brume_begin_frame(&f, v, NULL) == BRUME_ERR_NULL,
               "begin_frame refuses NULL");
+}
+
+/* The same of a scene's lighting. */
+static void check_lighting_limits(const struct test_volumes *volumes)
+{
+    static const int8_t k_up[3 * 64] = {0, 0, 127};
+    static const uint8_t k_codes[1] = {0};
+    const struct brume_direction_table good_table = {k_up, 3, 3, 0};
+    struct brume_direction_table t = good_table;
+    struct brume_cache c;
+    struct brume_lighting good = {.octaves = 8,
+                                  .octave_a = 0x10000,
+                                  .octave_b = 0x10000,
+                                  .sun_colour = {16 << 16, 0, 1},
+                                  .exposure = 16 << 16,
+                                  .ambient = BRUME_AMBIENT_CUBE,
+                                  .visibility = BRUME_SKY_SAMPLED,
+                                  .visibility_samples = 16,
+                                  .visibility_step = BRUME_MAX_STEP,
+                                  .directions = &t};
+    struct brume_lighting l;
+    struct brume_scene s;
+    struct brume_frame f;
+    const struct brume_volume *v = test_volume_of(volumes, &test_scenes[0]);
+    test_scene_fill(&s, &test_scenes[0], v);
+    s.lighting = &l;
+#define EXPECT(change, error) \
+    l = good; \
+    t = good_table; \
+    change; \
+    tap_check(brume_begin_frame(&f, v, &s) == (error), "%s gives " #error, \
+              #change)
+    EXPECT(l.octaves = 8, BRUME_OK);
+    EXPECT(l.octaves = 0, BRUME_OK);
+    EXPECT(l.octaves = 9, BRUME_ERR_SCENE);
+    EXPECT(l.octave_a = 0x10001, BRUME_ERR_SCENE);
+    EXPECT(l.octave_b = 0x10001, BRUME_ERR_SCENE);
+    EXPECT(l.sun_colour[1] = (16 << 16) + 1, BRUME_ERR_SCENE);
+    EXPECT(l.exposure = (16 << 16) + 1, BRUME_ERR_SCENE);
+    EXPECT(l.exposure = 255, BRUME_ERR_SCENE);
+    EXPECT(l.exposure = 0, BRUME_OK);
+    EXPECT(l.ambient = 4, BRUME_ERR_SCENE);
+    EXPECT(l.visibility = 3, BRUME_ERR_SCENE);
+    EXPECT(l.visibility = BRUME_SKY_BAKED, BRUME_ERR_SECTION);
+    EXPECT(l.visibility_samples = 17, BRUME_ERR_SCENE);
+    EXPECT(l.visibility_step = 0, BRUME_ERR_SCENE);
+    EXPECT(l.visibility_step = BRUME_MAX_STEP + 1, BRUME_ERR_SCENE);
+    EXPECT(l.directions = NULL, BRUME_ERR_SCENE);
+    EXPECT(t.values = NULL, BRUME_ERR_SCENE);
+    EXPECT(t.width_log2 = 2, BRUME_ERR_SCENE);
+    EXPECT(t.height_log2 = 9, BRUME_ERR_SCENE);
+    EXPECT(t.frames_log2 = 7, BRUME_ERR_SCENE);
+    EXPECT(l.ambient_colour[5][2] = (16 << 16) + 1, BRUME_ERR_SCENE);
+    EXPECT((l.ambient = BRUME_AMBIENT_NONE, l.directions = NULL), BRUME_OK);
+    EXPECT((l.sky = true, l.sky_zenith[0] = (16 << 16) + 1), BRUME_ERR_SCENE);
+    EXPECT((l.sky = true, l.sky_horizon[1] = (16 << 16) + 1), BRUME_ERR_SCENE);
+    EXPECT((l.sky = true, l.sky_ground[2] = (16 << 16) + 1), BRUME_ERR_SCENE);
+    EXPECT((l.sky = true, l.sun_disc[0] = (16 << 16) + 1), BRUME_ERR_SCENE);
+    EXPECT((l.sky = true, l.sun_disc[0] = 16 << 16), BRUME_OK);
+    s.light = BRUME_CONE;
+    EXPECT(s.light_samples = 16, BRUME_ERR_SECTION);
+    EXPECT(s.light_samples = 17, BRUME_ERR_SAMPLES);
+    s.light = BRUME_CACHE;
+    const struct brume_cache good_cache = {k_codes, NULL, {1, 1, 1},
+                                           1,       0,    {0x80000000u, -31}};
+#undef EXPECT
+#define EXPECT(change, error) \
+    l = good; \
+    c = good_cache; \
+    l.cache = &c; \
+    t = good_table; \
+    change; \
+    tap_check(brume_begin_frame(&f, v, &s) == (error), "%s gives " #error, \
+              #change)
+    EXPECT(l.cache = NULL, BRUME_ERR_SCENE);
+    EXPECT(c.from = NULL, BRUME_ERR_SCENE);
+    EXPECT(c.spacing_log2 = 0, BRUME_ERR_SCENE);
+    EXPECT(c.spacing_log2 = 4, BRUME_ERR_SCENE);
+    EXPECT(c.blend = 1, BRUME_ERR_SCENE);
+#undef EXPECT
 }
 
 int main(int argc, char **argv)
@@ -359,6 +439,7 @@ int main(int argc, char **argv)
     check_formats(&volumes);
     check_rectangles(&volumes);
     check_scene_limits(&volumes);
+    check_lighting_limits(&volumes);
     check_random_skips(&volumes);
     check_misses(&volumes);
     check_scenes(&volumes);

@@ -7,75 +7,7 @@
 
 #include "brume_inner.h"
 #include "noises.h"
-#include "scene_file.h"
-#include "support/asset_builder.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#define COUNT(array) (sizeof(array) / sizeof *(array))
-
-static char dir[64];   /* of this run, removed at the end */
-static char path[256]; /* of the scene file in it */
-static char err[512];
-static struct scene_settings settings; /* of the last text read */
-
-/// Texts ///
-
-static void put_text(const char *text, size_t size)
-{
-    FILE *f = fopen(path, "wb");
-    if (f == NULL || fwrite(text, 1, size, f) != size || fclose(f) != 0) {
-        perror(path);
-        exit(1);
-    }
-}
-
-static int read_bytes(const char *text, size_t size)
-{
-    put_text(text, size);
-    memset(&settings, 0, sizeof settings);
-    memset(err, 0, sizeof err);
-    return scene_read(&settings, path, err, sizeof err);
-}
-
-static int read_text(const char *text)
-{
-    return read_bytes(text, strlen(text));
-}
-
-/* Refused in one line that starts with the file and line, and says so. */
-static bool is_refusal(int result, int line, const char *says)
-{
-    char start[300];
-    snprintf(start, sizeof start, "%s:%d: ", path, line);
-    bool good = result != 0 && strncmp(err, start, strlen(start)) == 0 &&
-                strstr(err, says) != NULL && strchr(err, '\n') == NULL;
-    if (!good)
-        printf("# result %d, '%s'\n", result, err);
-    return good;
-}
-
-static bool refuses(const char *text, int line, const char *says)
-{
-    return is_refusal(read_text(text), line, says);
-}
-
-static bool takes(const char *text, int key, double a, double b, double c)
-{
-    const double want[3] = {a, b, c};
-    bool good = read_text(text) == 0;
-    for (int i = 0; i < SCENE_KEYS; i++)
-        good = good && settings.set[i] == (i == key);
-    for (int i = 0; i < 3; i++)
-        good = good && settings.value[key][i] == want[i];
-    if (!good)
-        printf("# '%s': '%s'\n", text, err);
-    return good;
-}
+#include "support/scene_text.h"
 
 /// Keys ///
 
@@ -113,6 +45,18 @@ static const struct range k_ranges[] = {
     {"gamma", SCENE_GAMMA, "0", "16", "-1e-9", "16.00001", 0, 16},
     {"edge_falloff", SCENE_EDGE_FALLOFF, "0", "1024", "-1e-9", "1024.0001", 0,
      1024},
+    {"octaves", SCENE_OCTAVES, "1", "8", "0", "9", 1, 8},
+    {"octave_a", SCENE_OCTAVE_A, "0", "1", "-1e-9", "1.0000001", 0, 1},
+    {"octave_b", SCENE_OCTAVE_B, "0", "1", "-1e-9", "1.0000001", 0, 1},
+    {"octave_c", SCENE_OCTAVE_C, "0", "1", "-1e-9", "1.0000001", 0, 1},
+    {"exposure", SCENE_EXPOSURE, "0.00390625", "16", "0.0039062", "16.00001",
+     0.00390625, 16},
+    {"visibility_samples", SCENE_VISIBILITY_SAMPLES, "0", "16", "-1", "17", 0,
+     16},
+    {"visibility_step", SCENE_VISIBILITY_STEP, "0.0625", "256", "0.0624999",
+     "256.00001", 0.0625, 256},
+    {"sun_size", SCENE_SUN_SIZE, "0", "45", "-1e-9", "45.00001", 0, 45},
+    {"haze", SCENE_HAZE, "0", "65535", "-1e-9", "65535.01", 0, 65535},
 };
 
 static void test_ranges(void)
@@ -242,8 +186,8 @@ static const struct {
     int index;
     const char *words[22];
 } k_words[] = {
-    {"filter", SCENE_FILTER, {"nearest", "trilinear"}},
-    {"light", SCENE_LIGHT, {"log", "uniform", "none"}},
+    {"filter", SCENE_FILTER, {"nearest", "trilinear", "stochastic"}},
+    {"light", SCENE_LIGHT, {"log", "uniform", "none", "cone", "cache"}},
     {"jitter", SCENE_JITTER, {"none", "primary", "light", "both"}},
     {"noise",
      SCENE_NOISE,
@@ -252,7 +196,7 @@ static const struct {
       "blue-slices", "stbn",       "stbn-small", "stbn-tiny",     "fast",
       "fast-small",  "fast-tiny",  "golden",     "bayer8-golden", "r2",
       "nrooks"}},
-    {"output", SCENE_OUTPUT, {"linear", "srgb"}},
+    {"output", SCENE_OUTPUT, {"linear", "srgb", "filmic"}},
     {"skip", SCENE_SKIP, {"off", "on"}},
     {"temporal", SCENE_TEMPORAL, {"none", "ema", "window", "taa"}},
     {"history_bits", SCENE_HISTORY_BITS, {"8", "16"}},
@@ -267,6 +211,11 @@ static const struct {
     {"upsample", SCENE_UPSAMPLE, {"bilinear", "aware"}},
     {"subpixel", SCENE_SUBPIXEL, {"off", "on"}},
     {"cut", SCENE_CUT, {"off", "on"}},
+    {"ambient", SCENE_AMBIENT, {"none", "constant", "gradient", "cube"}},
+    {"visibility", SCENE_VISIBILITY, {"open", "sampled", "baked"}},
+    {"cache_spacing", SCENE_CACHE_SPACING, {"auto", "2", "4", "8"}},
+    {"sky", SCENE_SKY, {"off", "on"}},
+    {"dither", SCENE_DITHER, {"off", "on"}},
 };
 
 static void test_words(void)
@@ -449,95 +398,6 @@ static void test_set(void)
     tap_check(scene_set(&settings, "foo=1", "--set", small, 4) != 0 &&
                   strcmp(small, "--s") == 0 && small[4] == '#',
               "a message is cut to the room there is");
-}
-
-/// Volumes ///
-
-struct world {
-    double matrix[12];
-    double voxel_size;
-    int32_t origin[3];
-};
-
-static const struct world k_plain = {
-    {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, 1, {0, 0, 0}};
-
-/* Turned about z by the 3-4-5 triangle, then about x by 5-12-13; voxels of a
- * quarter. */
-static const struct world k_turned = {
-    {0.25 * 3 / 5, -0.25 * 4 / 5, 0, 10,                         /* row of x */
-     0.25 * 4 * 5 / 65, 0.25 * 3 * 5 / 65, -0.25 * 12 / 13, -20, /* y */
-     0.25 * 4 * 12 / 65, 0.25 * 3 * 12 / 65, 0.25 * 5 / 13, 30}, /* z */
-    0.25,
-    {-7, 11, 5}};
-
-/* Only as large as it must be: the box is in the header. */
-static struct volume_file make_volume(const struct world *world,
-                                      const int low[3], const int high[3],
-                                      uint32_t density)
-{
-    struct density_box box = {
-        {low[0], low[1], low[2]}, {high[0], high[1], high[2]}, density};
-    struct asset_spec spec =
-        asset_spec_of((high[0] + 7) / 8, (high[1] + 7) / 8, (high[2] + 7) / 8,
-                      BRUME_U8R, density_in_box, &box);
-    struct volume_file file = {0};
-    file.data = asset_build(&spec, &file.size);
-    if (brume_volume_open(&file.volume, file.data, file.size, 0) != BRUME_OK)
-        abort();
-    memcpy(file.world_from_index, world->matrix, sizeof world->matrix);
-    memcpy(file.origin, world->origin, sizeof world->origin);
-    file.voxel_size = world->voxel_size;
-    return file;
-}
-
-static struct volume_file make_block(const struct world *world)
-{
-    static const int k_low[3] = {2, 4, 6}, k_high[3] = {40, 30, 20};
-    return make_volume(world, k_low, k_high, 20000);
-}
-
-static int apply_text(const char *text, const struct volume_file *file,
-                      struct brume_scene *scene)
-{
-    if (read_text(text) != 0)
-        return -2;
-    return scene_apply(&settings, file, scene, err, sizeof err);
-}
-
-/* SPEC.md: index = pool + origin, world = matrix * index. */
-static void world_of(const struct world *w, const double pool[3], double out[3])
-{
-    for (int i = 0; i < 3; i++) {
-        out[i] = w->matrix[4 * i + 3];
-        for (int j = 0; j < 3; j++)
-            out[i] += w->matrix[4 * i + j] * (pool[j] + w->origin[j]);
-    }
-}
-
-/* A direction of the pool in world axes, as a unit vector. */
-static void world_way(const struct world *w, const int32_t pool[3],
-                      double out[3])
-{
-    double length = 0;
-    for (int i = 0; i < 3; i++) {
-        out[i] = 0;
-        for (int j = 0; j < 3; j++)
-            out[i] += w->matrix[4 * i + j] * pool[j];
-        length += out[i] * out[i];
-    }
-    for (int i = 0; i < 3; i++)
-        out[i] /= sqrt(length);
-}
-
-static bool is_near(const double a[3], const double b[3], double bound)
-{
-    for (int i = 0; i < 3; i++)
-        if (!(fabs(a[i] - b[i]) <= bound)) {
-            printf("# axis %d: %.12g and %.12g\n", i, a[i], b[i]);
-            return false;
-        }
-    return true;
 }
 
 /// Spaces ///
@@ -934,21 +794,41 @@ static const char *difference(const struct brume_scene *a,
     return NULL;
 }
 
+/* The same of what lies behind them. */
+/* What lies behind the lighting of two scenes. */
+static bool same_light(const struct brume_scene *a, const struct brume_scene *b)
+{
+    const struct brume_lighting *l = a->lighting, *m = b->lighting;
+    struct brume_lighting copy;
+    if (l == NULL || m == NULL)
+        return l == m;
+    if ((l->phase == NULL) != (m->phase == NULL) ||
+        (l->phase != NULL &&
+         memcmp(l->phase, m->phase, l->octaves * sizeof *l->phase) != 0))
+        return false;
+    copy = *m;
+    copy.phase = l->phase;
+    return memcmp(l, &copy, sizeof copy) == 0;
+}
+
 static void print_and_read(const struct volume_file *file, const char *text,
                            const char *name)
 {
+    static struct scene_light other;
     struct brume_scene first, second;
     bool good = apply_text(text, file, &first) == 0;
     FILE *f = fopen(path, "w");
     if (f == NULL)
         exit(1);
-    scene_print(f, &first, file);
+    scene_print(f, &first, &light, file);
     fclose(f);
     memset(&settings, 0, sizeof settings);
     memset(err, 0, sizeof err);
     good = good && scene_read(&settings, path, err, sizeof err) == 0 &&
-           scene_apply(&settings, file, &second, err, sizeof err) == 0;
+           scene_apply(&settings, file, &second, &other, err, sizeof err) == 0;
     const char *field = good ? difference(&first, &second) : err;
+    if (good && field == NULL && !same_light(&first, &second))
+        field = "lighting";
     for (int i = 0; i < SCENE_KEYS; i++)
         good = good && settings.set[i];
     tap_check(good && field == NULL, "%s: printed and read back, the same%s%s",
@@ -970,7 +850,20 @@ static void test_printing(const struct world *w, const char *name)
         "window = 3\nalpha = 0.123456789\nfetch = catmull-rom\n"
         "clamp = minmax\ngamma = 1.23456789\nspatial = bilateral15\n"
         "edge_falloff = 3.3333333\nresolution = half\nupdate = checker\n"
-        "upsample = aware\nsubpixel = off\ncut = on\n";
+        "upsample = aware\nsubpixel = off\ncut = on\n"
+        "phase = mix:0.123456789,12.3456789,-0.3333333333,0.987654321\n"
+        "octaves = 5\noctave_a = 0.41\noctave_b = 0.77777777\n"
+        "octave_c = 0.3333333333\nsun_colour = 1.1 1.0 0.9\n"
+        "exposure = 1.23456789\nambient = cube\nambient_colour = 0.11\n"
+        "ambient_top = 0.3 0.4 0.5\nambient_bottom = 0.2 0.1 0.3\n"
+        "ambient_px = 0.1 0.2 0.3\nambient_nx = 0.4 0.5 0.6\n"
+        "ambient_py = 0.7 0.8 0.9\nambient_ny = 1.1 1.2 1.3\n"
+        "ambient_pz = 1.4 1.5 1.6\nambient_nz = 1.7 1.8 1.9\n"
+        "visibility = sampled\nvisibility_samples = 3\n"
+        "visibility_step = 3.3333333\ncache_spacing = 8\nsky = on\n"
+        "sky_zenith = 0.1 0.2 0.4\nsky_horizon = 0.6 0.7 0.8\n"
+        "sky_ground = 0.3 0.2 0.1\nsun_disc = 15 14 13\n"
+        "sun_size = 0.7654321\nhaze = 1234.56789\ndither = on\n";
     char text[100];
     struct volume_file file = make_block(w);
     snprintf(text, sizeof text, "%s, defaults", name);
@@ -992,7 +885,7 @@ static void test_thin_volume(void)
     FILE *f = fopen(path, "w");
     if (f == NULL)
         exit(1);
-    scene_print(f, &scene, &file);
+    scene_print(f, &scene, &light, &file);
     fclose(f);
     good = good && scene_read(&settings, path, err, sizeof err) == 0;
     tap_check(good, "the largest density_scale is read back too%s%s",
@@ -1002,7 +895,7 @@ static void test_thin_volume(void)
 
 static void test_key_list(void)
 {
-    char text[8192];
+    char text[16384];
     FILE *f = fopen(path, "w+");
     if (f == NULL)
         exit(1);
@@ -1021,13 +914,7 @@ static void test_key_list(void)
 
 int main(void)
 {
-    const char *tmp = getenv("TMPDIR");
-    snprintf(dir, sizeof dir, "%.40s/brumeXXXXXX", tmp ? tmp : "/tmp");
-    if (mkdtemp(dir) == NULL) {
-        perror(dir);
-        return 1;
-    }
-    snprintf(path, sizeof path, "%s/test.scene", dir);
+    texts_begin();
     test_ranges();
     test_size();
     test_vectors();
@@ -1059,7 +946,6 @@ int main(void)
     test_printing(&k_turned, "turned");
     test_thin_volume();
     test_key_list();
-    remove(path);
-    rmdir(dir);
+    texts_end();
     return tap_done();
 }

@@ -13,6 +13,7 @@
 
 #include "brume_inner.h"
 #include "support/asset_builder.h"
+#include "support/random_light.h"
 #include "support/volumes.h"
 #include "tap.h"
 #include "wide.h"
@@ -293,6 +294,8 @@ static void random_scene(struct brume_scene *s, const struct brume_volume *v,
     random_marching(s, table);
     if (one_in(2))
         random_sequence(s);
+    if (one_in(2))
+        random_light_fill(s, v, random_below);
 }
 
 /* A rectangle of the lattice, mostly all of it. */
@@ -317,7 +320,7 @@ static void check_random(const struct test_volumes *volumes)
         values[i] = (uint8_t)random_below(256);
     for (int n = 0; n < RANDOM_SCENES; n++) {
         /* Those made here, not the files: they are small. */
-        int which = (int)random_below(7);
+        int which = (int)random_below(9);
         const struct brume_volume *v = &volumes->item[which].volume;
         struct brume_scene scene;
         struct brume_frame frame;

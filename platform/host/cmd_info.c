@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "commands.h"
-#include "scene_file.h"
+#include "scene_light.h"
 #include "volume_file.h"
 
 static const char k_help[] =
@@ -61,6 +61,9 @@ static void print_info(const struct volume_file *file)
     printf("voxel_size=%.9g\n", file->voxel_size);
     printf("density_max=%.9g\n", value_of(v->density_max));
     printf("density_mean=%.9g\n", value_of(v->density_mean));
+    printf("mips=%s\n", v->mips != NULL ? "yes" : "no");
+    printf("sun_cache=%d\n", v->sun_cache != NULL ? 1 << v->sun_cache[0] : 0);
+    printf("sky_visibility=%s\n", v->sky != NULL ? "yes" : "no");
 }
 
 int info_main(int argc, char **argv)
@@ -88,14 +91,15 @@ int info_main(int argc, char **argv)
     }
     struct volume_file file;
     static const struct scene_settings k_none;
+    struct scene_light light;
     struct brume_scene scene;
     if (volume_file_open(&file, path, err, sizeof err) != 0 ||
-        scene_apply(&k_none, &file, &scene, err, sizeof err) != 0) {
+        scene_apply(&k_none, &file, &scene, &light, err, sizeof err) != 0) {
         fprintf(stderr, "brume info: %s\n", err);
         return 2;
     }
     if (scene_wanted)
-        scene_print(stdout, &scene, &file);
+        scene_print(stdout, &scene, &light, &file);
     else
         print_info(&file);
     volume_file_close(&file);

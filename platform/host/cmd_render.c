@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "panel.h"
 #include "sequence.h"
 
 static const char k_help[] =
@@ -24,6 +25,13 @@ static const char k_help[] =
     "  --hash            print the CRC-32 of the pixels, rows from the top\n"
     "  --profile         print milliseconds by pass to stderr: processor time\n"
     "                    of all threads, the clock, the march's share\n"
+    "  --pixels FORMAT   what a panel shows: drawn in rgb888 rgb565 rgb332 l8 "
+    "l4\n"
+    "                    l2 l1 or rgba8888, then widened to 8 bits; see the "
+    "key\n"
+    "                    dither. rgba8888, light over a clear background, "
+    "goes\n"
+    "                    into .png and .apng\n"
     "  -o OUT            .pfm holds linear radiance, whatever `output` says\n"
     "\n"
     "Sequences:\n"
@@ -134,13 +142,21 @@ static int read_kernel(struct sequence *s, const char *value)
     return 0;
 }
 
+static int read_pixels(struct sequence *s, const char *value)
+{
+    char what[128];
+    s->pixels = panel_format(value);
+    snprintf(what, sizeof what, "--pixels is one of %s, not ", panel_names);
+    return s->pixels < 0 ? usage(what, value) : 0;
+}
+
 /// Options ///
 
 static bool takes_value(const char *name)
 {
-    static const char *const k_names[] = {"-o",        "--scene", "--set",
-                                          "--threads", "--path",  "--frames",
-                                          "--fps",     "--kernel"};
+    static const char *const k_names[] = {"-o",        "--scene",  "--set",
+                                          "--threads", "--path",   "--frames",
+                                          "--fps",     "--kernel", "--pixels"};
     for (size_t i = 0; i < sizeof k_names / sizeof *k_names; i++)
         if (strcmp(name, k_names[i]) == 0)
             return true;
@@ -163,6 +179,8 @@ static int read_option(struct options *o, const char *name, const char *value)
         return read_rate(&o->sequence, value);
     if (strcmp(name, "--kernel") == 0)
         return read_kernel(&o->sequence, value);
+    if (strcmp(name, "--pixels") == 0)
+        return read_pixels(&o->sequence, value);
     if (strcmp(name, "-o") == 0)
         o->sequence.out = value;
     else if (strcmp(name, "--path") == 0)
@@ -210,6 +228,7 @@ static int read_options(struct options *o, int argc, char **argv)
     o->sequence.kernel = wide_best();
     o->sequence.rate[0] = 25;
     o->sequence.rate[1] = 1;
+    o->sequence.pixels = -1;
     for (int i = 1; i < argc; i++) {
         int result = read_argument(o, argv, &i);
         if (result)

@@ -8,5 +8,6 @@
 
 int render_main(int argc, char **argv);
 int info_main(int argc, char **argv);
+int shadow_main(int argc, char **argv);
 
 #endif

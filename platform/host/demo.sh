@@ -65,6 +65,10 @@ else
     draw cumulus.png "$out/cumulus.brume" --scene scenes/cumulus.scene
     draw cumulus_low_sun.png "$out/cumulus.brume" \
         --scene scenes/cumulus_low_sun.scene
+    draw cumulus_sky.png "$out/cumulus.brume" \
+        --scene scenes/cumulus_sky.scene
+    draw cumulus_panel.png "$out/cumulus.brume" \
+        --scene scenes/panel.scene --pixels l1
     draw cumulus_default.png "$out/cumulus.brume"
 fi
 draw "${name}_day.apng" "$out/$name.brume" --frames 0:47 \

@@ -47,8 +47,8 @@ static int check_size(int width, int height, int channels, size_t sample_size,
         return image_error(err, err_size,
                            "size %d x %d: each side must be 1 to %d", width,
                            height, IMAGE_MAX_SIDE);
-    if (channels != 1 && channels != 3)
-        return image_error(err, err_size, "%d channels: must be 1 or 3",
+    if (channels != 1 && channels != 3 && (channels != 4 || sample_size != 1))
+        return image_error(err, err_size, "%d channels: must be 1, 3 or 4",
                            channels);
     if ((uint64_t)width * (uint64_t)height * (uint64_t)channels * sample_size >
         IMAGE_MAX_BYTES)
@@ -110,8 +110,8 @@ int image_is_grey(const struct image *image)
     const uint8_t *p = image->u8;
     size_t samples = image_samples(image);
 
-    if (image->channels == 1)
-        return 1;
+    if (image->channels != 3)
+        return image->channels == 1;
     for (size_t i = 0; i < samples; i += 3)
         if (p[i] != p[i + 1] || p[i] != p[i + 2])
             return 0;
@@ -250,6 +250,9 @@ static int check_image(const struct image *image, enum image_format format,
     if (format != IMAGE_PFM && !image->u8)
         return image_error(err, err_size,
                            "float pixels fit only in a .pfm file");
+    if (format != IMAGE_PNG && image->channels == 4)
+        return image_error(err, err_size,
+                           "RGBA pixels fit only in a .png file");
     if (format == IMAGE_PGM && !image_is_grey(image))
         return image_error(err, err_size, "RGB pixels do not fit in a PGM");
     return 0;

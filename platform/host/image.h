@@ -20,13 +20,13 @@
  * which 1.0 is what 255 is in 8 bits. All zero is an empty image. */
 struct image {
     int width, height;
-    int channels; /* 1 grey, 3 RGB */
+    int channels; /* 1 grey, 3 RGB; in 8 bits 4 RGBA, not premultiplied */
     uint8_t *u8;
     float *f32;
 };
 
 enum image_format {
-    IMAGE_PNG, /* 8-bit grey or RGB */
+    IMAGE_PNG, /* 8-bit grey, RGB or RGBA */
     IMAGE_PPM, /* P6: 8-bit RGB */
     IMAGE_PGM, /* P5: 8-bit grey */
     IMAGE_PFM  /* Pf or PF: float grey or RGB */
@@ -64,7 +64,8 @@ int image_read(const char *path, struct image *image, char *err,
 /* Write a file of the format that the extension says, or of `format`.
  *
  * An RGB image whose channels are equal everywhere becomes a grey PNG. PPM
- * repeats grey; PGM refuses RGB unless the channels are equal. PFM takes 8-bit
+ * repeats grey; PGM refuses RGB unless the channels are equal; all but PNG
+ * refuse RGBA. PFM takes 8-bit
  * images too, as value / 255; the 8-bit formats refuse float images. Values
  * that are not finite are refused.
  *

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The PNG writer: 8-bit grey or RGB, one IDAT chunk, a filter per row.
+ * The PNG writer: 8-bit grey, RGB or RGBA, one IDAT chunk, a filter per row.
  */
 #include "image_codec.h"
 
@@ -38,7 +38,7 @@ static uint8_t *drop_colour(const struct image *image)
 int image_png_encode_with(struct pool *pool, const struct image *image,
                           struct image_file *file, char *err, size_t err_size)
 {
-    size_t channels = image_is_grey(image) ? 1 : 3;
+    size_t channels = image_is_grey(image) ? 1 : (size_t)image->channels;
     size_t width = (size_t)image->width, height = (size_t)image->height;
     struct png_pixels p = {image->u8, width, height, channels,
                            width * channels};

@@ -11,6 +11,7 @@ static const char k_help[] =
     "usage: brume COMMAND ...\n"
     "\n"
     "  render   draw a baked volume, as a picture or a sequence\n"
+    "  shadow   draw the shadow that a baked volume throws\n"
     "  info     say what a baked volume holds\n"
     "  compare  measure how two pictures differ\n"
     "\n"
@@ -21,6 +22,8 @@ int main(int argc, char **argv)
     const char *name = argc > 1 ? argv[1] : "--help";
     if (strcmp(name, "render") == 0)
         return render_main(argc - 1, argv + 1);
+    if (strcmp(name, "shadow") == 0)
+        return shadow_main(argc - 1, argv + 1);
     if (strcmp(name, "info") == 0)
         return info_main(argc - 1, argv + 1);
     if (strcmp(name, "compare") == 0)

@@ -19,7 +19,7 @@ struct entry {
     bool cut;       /* jumps to this value */
     enum ease ease; /* towards the next one */
     unsigned line;
-    double value[3];
+    double value[SCENE_VALUES];
     const struct brume_noise_table *noise_file;
 };
 
@@ -328,7 +328,7 @@ static void set_key(const struct path *path, int key, uint32_t frame,
     const struct entry *all = path->entry + path->first[key];
     size_t n = path->first[key + 1] - path->first[key];
     size_t i = entry_at(all, n, frame);
-    bool moves = k->kind != SCENE_IS_WORD && i + 1 < n && !all[i + 1].cut &&
+    bool moves = scene_key_moves(key) && i + 1 < n && !all[i + 1].cut &&
                  frame > all[i].frame;
     memcpy(settings->value[key], all[i].value, sizeof all[i].value);
     if (key == SCENE_NOISE)

@@ -219,8 +219,8 @@ uint8_t *png_put_start(uint8_t *p, size_t width, size_t height, size_t channels)
 
     png_put_be32(ihdr, (uint32_t)width);
     png_put_be32(ihdr + 4, (uint32_t)height);
-    ihdr[8] = 8;                     /* bits per sample */
-    ihdr[9] = channels == 1 ? 0 : 2; /* grey or RGB */
+    ihdr[8] = 8;                                         /* bits per sample */
+    ihdr[9] = channels == 1 ? 0 : channels == 3 ? 2 : 6; /* colour type */
     memcpy(p, signature, sizeof signature);
     return png_put_chunk(p + sizeof signature, "IHDR", ihdr, sizeof ihdr);
 }

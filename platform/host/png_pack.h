@@ -9,7 +9,8 @@
 #include "image_codec.h"
 #include "pool.h"
 
-/* 8-bit samples, 1 or 3 (grey, RGB) to a pixel; rows `stride` bytes apart. */
+/* 8-bit samples, 1, 3 or 4 (grey, RGB, RGBA) to a pixel; rows `stride` bytes
+ * apart. */
 struct png_pixels {
     const uint8_t *data;
     size_t width, height, channels, stride;
@@ -29,7 +30,7 @@ uint8_t *png_put_be32(uint8_t *p, uint32_t value);
 uint8_t *png_put_be16(uint8_t *p, uint32_t value);
 uint8_t *png_put_chunk(uint8_t *p, const char *type, const uint8_t *data,
                        size_t size);
-/* Signature and IHDR: 8 bits a sample, grey or RGB. */
+/* Signature and IHDR: 8 bits a sample, grey, RGB or RGBA. */
 uint8_t *png_put_start(uint8_t *p, size_t width, size_t height,
                        size_t channels);
 

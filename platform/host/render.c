@@ -107,11 +107,12 @@ static struct tile tile_at(const struct sweep *s, unsigned number)
     return t;
 }
 
+/* Tiles begin at multiples of 8 pixels, so at whole bytes. */
 static uint8_t *pixel_at(const struct render_target *target, unsigned x,
                          unsigned y)
 {
     return (uint8_t *)target->dst + y * target->stride +
-           (size_t)x * brume_pixel_bytes(target->pixel_format);
+           brume_row_bytes(target->pixel_format, x);
 }
 
 static void note(struct sweep *s, int error)
@@ -144,7 +145,7 @@ static void march_tile(void *arg, unsigned task, unsigned worker)
                                  t.h, rays, TILE_WIDTH));
     now = profile_add(p, PASS_MARCH, now);
     if (s->plain)
-        note(s, brume_pack_rect(s->frame, rays, TILE_WIDTH, t.w, t.h,
+        note(s, brume_pack_rect(s->frame, rays, TILE_WIDTH, t.x, t.y, t.w, t.h,
                                 to->pixel_format, pixel_at(to, t.x, t.y),
                                 to->stride));
     else

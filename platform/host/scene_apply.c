@@ -7,6 +7,7 @@
 
 #include "noises.h"
 #include "scene_keys.h"
+#include "scene_light.h"
 
 /* Nats per octave, when bilateral15 is chosen and nothing else said: surfaces
  * a sixteenth of an octave apart (4 % of their distance) count for 1/e. */
@@ -50,9 +51,8 @@ static int apply_point(const struct scene_settings *s, int key,
     return 0;
 }
 
-/* A direction of any length, as Q2.30. */
-static int apply_direction(const struct volume_file *file, const double v[3],
-                           int32_t out[3])
+int scene_direction(const struct volume_file *file, const double v[3],
+                    int32_t out[3])
 {
     double pool[3];
     volume_file_direction(file, v, pool);
@@ -90,7 +90,7 @@ static int apply_sun(const struct scene_settings *s,
     }
     for (int i = 0; i < 3; i++)
         v[i] = q30[i];
-    return apply_direction(file, v, out->sun);
+    return scene_direction(file, v, out->sun);
 }
 
 /* Nothing said, and axes like the world's: the core's own default, to the
@@ -102,7 +102,7 @@ static int apply_up(const struct scene_settings *s,
     static const double k_up[3] = {0, 1, 0};
     const double *up = s->set[SCENE_UP] ? s->value[SCENE_UP] : k_up;
     if ((!s->set[SCENE_UP] && !scene_is_rotated(file)) ||
-        apply_direction(file, up, out->up) == 0)
+        scene_direction(file, up, out->up) == 0)
         return 0;
     snprintf(err, err_size, "%s: up has no direction", s->where[SCENE_UP]);
     return -1;
@@ -134,6 +134,12 @@ static void turn_camera(const struct volume_file *file, struct brume_scene *s)
         s->eye[i] = s->target[i] + (int32_t)floor(away[i] * scale);
 }
 
+/* Does the distance of its light samples double? */
+static bool doubles(const struct brume_scene *scene)
+{
+    return scene->light == BRUME_LOG || scene->light == BRUME_CONE;
+}
+
 /* The core's default light is uniform; doubling steps start from a voxel and
  * go on until the distance passes the box's diagonal. */
 static void default_light(const struct scene_settings *s,
@@ -141,7 +147,7 @@ static void default_light(const struct scene_settings *s,
                           struct brume_scene *out)
 {
     double square = 0;
-    if (!s->set[SCENE_LIGHT] || out->light != BRUME_LOG)
+    if (!s->set[SCENE_LIGHT] || !doubles(out))
         return;
     if (!s->set[SCENE_LIGHT_STEP])
         out->light_step = q16(1);
@@ -151,6 +157,8 @@ static void default_light(const struct scene_settings *s,
     }
     double steps = sqrt(square) * 65536.0 / out->light_step;
     double n = fmax(1, ceil(log2(steps)));
+    if (out->light == BRUME_CONE && n > 4) /* two octaves have two each */
+        n += 2;
     if (!s->set[SCENE_LIGHT_SAMPLES])
         out->light_samples = (uint16_t)fmin(n, BRUME_MAX_LOG_SAMPLES);
 }
@@ -219,9 +227,22 @@ static void apply_numbers(const struct scene_settings *s,
         out->background[i] = q16(s->value[SCENE_BACKGROUND][i]);
 }
 
+/* For callers that keep no memory for lighting. */
+static int refuse_light(const struct scene_settings *s, char *err,
+                        size_t err_size)
+{
+    for (int key = SCENE_LIGHT_FIRST; key < SCENE_KEYS; key++)
+        if (s->set[key]) {
+            snprintf(err, err_size, "%s: no %s here", s->where[key],
+                     scene_keys[key].name);
+            return -1;
+        }
+    return 0;
+}
+
 int scene_apply(const struct scene_settings *settings,
                 const struct volume_file *file, struct brume_scene *scene,
-                char *err, size_t err_size)
+                struct scene_light *light, char *err, size_t err_size)
 {
     const struct scene_settings *s = settings;
     brume_scene_default(scene, &file->volume);
@@ -235,10 +256,10 @@ int scene_apply(const struct scene_settings *settings,
         apply_up(s, file, scene, err, err_size) != 0 ||
         apply_sun(s, file, scene) != 0)
         return -1;
-    if (scene->light == BRUME_LOG &&
-        scene->light_samples > BRUME_MAX_LOG_SAMPLES) {
-        snprintf(err, err_size, "%s: light_samples is %d, log takes up to %d",
+    if (doubles(scene) && scene->light_samples > BRUME_MAX_LOG_SAMPLES) {
+        snprintf(err, err_size, "%s: light_samples is %d, %s takes up to %d",
                  s->where[SCENE_LIGHT_SAMPLES], scene->light_samples,
+                 scene->light == BRUME_LOG ? "log" : "cone",
                  BRUME_MAX_LOG_SAMPLES);
         return -1;
     }
@@ -248,5 +269,7 @@ int scene_apply(const struct scene_settings *settings,
                  s->where[key]);
         return -1;
     }
-    return 0;
+    if (light == NULL)
+        return refuse_light(s, err, err_size);
+    return scene_light_apply(s, file, scene, light, err, err_size);
 }

@@ -11,6 +11,8 @@
 
 #include "volume_file.h"
 
+struct scene_light; /* scene_light.h */
+
 enum scene_key {
     SCENE_SIZE,
     SCENE_EYE,
@@ -49,16 +51,46 @@ enum scene_key {
     SCENE_UPSAMPLE,
     SCENE_SUBPIXEL,
     SCENE_CUT,
+    SCENE_PHASE, /* the first of scene_light.c's */
+    SCENE_OCTAVES,
+    SCENE_OCTAVE_A,
+    SCENE_OCTAVE_B,
+    SCENE_OCTAVE_C,
+    SCENE_SUN_COLOUR,
+    SCENE_EXPOSURE,
+    SCENE_AMBIENT,
+    SCENE_AMBIENT_COLOUR,
+    SCENE_AMBIENT_TOP,
+    SCENE_AMBIENT_BOTTOM,
+    SCENE_AMBIENT_PX,
+    SCENE_AMBIENT_NX,
+    SCENE_AMBIENT_PY,
+    SCENE_AMBIENT_NY,
+    SCENE_AMBIENT_PZ,
+    SCENE_AMBIENT_NZ,
+    SCENE_VISIBILITY,
+    SCENE_VISIBILITY_SAMPLES,
+    SCENE_VISIBILITY_STEP,
+    SCENE_CACHE_SPACING,
+    SCENE_SKY,
+    SCENE_SKY_ZENITH,
+    SCENE_SKY_HORIZON,
+    SCENE_SKY_GROUND,
+    SCENE_SUN_DISC,
+    SCENE_SUN_SIZE,
+    SCENE_HAZE,
+    SCENE_DITHER,
     SCENE_KEYS
 };
 
 #define SCENE_LINE_SIZE 512 /* of a `key = value`, with its end */
 #define SCENE_WHERE_SIZE 300
+#define SCENE_VALUES 5 /* of one key at most */
 
 /* What was said, in the text's own units. Starts all zero. */
 struct scene_settings {
     bool set[SCENE_KEYS];
-    double value[SCENE_KEYS][3];
+    double value[SCENE_KEYS][SCENE_VALUES];
     const struct brume_noise_table *noise_file; /* or NULL */
     char where[SCENE_KEYS][SCENE_WHERE_SIZE];   /* file:line, cut to fit */
 };
@@ -73,16 +105,19 @@ int scene_read(struct scene_settings *settings, const char *path, char *err,
 int scene_fill(struct scene_settings *settings, const char *text, char *err,
                size_t err_size);
 
-/* The core's scene: defaults that suit the volume, then what was set. */
+/* The core's scene: defaults that suit the volume, then what was set. It may
+ * point to *light, which must stay where it is as long as the scene is used.
+ * Without one (NULL) the keys of lighting are refused. */
 int scene_apply(const struct scene_settings *settings,
                 const struct volume_file *file, struct brume_scene *scene,
-                char *err, size_t err_size);
+                struct scene_light *light, char *err, size_t err_size);
 
 /* A line per key: its values, range and default. */
 void scene_print_keys(FILE *to);
 
-/* The scene as text that scene_read takes back. */
+/* The scene as text that scene_read takes back; both of one scene_apply. */
 void scene_print(FILE *to, const struct brume_scene *scene,
+                 const struct scene_light *light,
                  const struct volume_file *file);
 
 #endif

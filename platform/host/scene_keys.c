@@ -7,9 +7,11 @@
 #include <string.h>
 
 #include "noises.h"
+#include "scene_phase.h"
 
 #define FAR 1e9 /* world coordinates; the pool's own limit comes later */
 #define MAX_Q32 4294967295.0 /* whole part of the core's Q32.32 */
+#define MAX_COLOUR 16
 
 const struct scene_key_info scene_keys[SCENE_KEYS] = {
     {"size", SCENE_IS_SIZE, 1, BRUME_MAX_SIZE, NULL, "WxH pixels (640x480)"},
@@ -34,12 +36,14 @@ const struct scene_key_info scene_keys[SCENE_KEYS] = {
      "ends a ray below it (0.01)"},
     {"max_density", SCENE_IS_NUMBER, 0, 1e9, NULL,
      "clamps voxels (0: no clamp)"},
-    {"filter", SCENE_IS_WORD, 0, 0, "nearest trilinear", "(trilinear)"},
-    {"light", SCENE_IS_WORD, 0, 0, "log uniform none", "(uniform)"},
+    {"filter", SCENE_IS_WORD, 0, 0, "nearest trilinear stochastic",
+     "(trilinear)"},
+    {"light", SCENE_IS_WORD, 0, 0, "log uniform none cone cache", "(uniform)"},
     {"light_samples", SCENE_IS_INTEGER, 0, BRUME_MAX_UNIFORM_SAMPLES, NULL,
-     "per lit sample; log: at most 16 (64; log: to cross the box)"},
+     "per lit sample; log, cone: at most 16 (64; log, cone: to cross the "
+     "box)"},
     {"light_step", SCENE_IS_NUMBER, 0.0625, 256, NULL,
-     "voxels; log doubles it (1/64 of the box; log: 1)"},
+     "voxels; log, cone double it (1/64 of the box; log, cone: 1)"},
     {"jitter", SCENE_IS_WORD, 0, 0, "none primary light both",
      "which rays are jittered (primary)"},
     {"noise", SCENE_IS_WORD, 0, 0, noise_words,
@@ -47,7 +51,8 @@ const struct scene_key_info scene_keys[SCENE_KEYS] = {
     {"frame", SCENE_IS_INTEGER, 0, UINT32_MAX, NULL, "moves the noise (0)"},
     {"background", SCENE_IS_COLOUR, 0, 1, NULL,
      "linear grey or r,g,b (0.12,0.25,0.5)"},
-    {"output", SCENE_IS_WORD, 0, 0, "linear srgb", "mapping to 0..255 (srgb)"},
+    {"output", SCENE_IS_WORD, 0, 0, "linear srgb filmic",
+     "mapping to 0..255 (srgb)"},
     {"skip", SCENE_IS_WORD, 0, 0, "off on", "leap over empty cells (on)"},
     {"temporal", SCENE_IS_WORD, 0, 0, "none ema window taa",
      "what earlier frames add (none)"},
@@ -74,6 +79,58 @@ const struct scene_key_info scene_keys[SCENE_KEYS] = {
     {"subpixel", SCENE_IS_WORD, 0, 0, "off on",
      "moves rays within their pixels (off; window, taa: on)"},
     {"cut", SCENE_IS_WORD, 0, 0, "off on", "forgets earlier frames (off)"},
+    {"phase", SCENE_IS_PHASE, 0, 0, scene_phase_words,
+     "phase function (isotropic)"},
+    {"octaves", SCENE_IS_INTEGER, 1, BRUME_MAX_OCTAVES, NULL,
+     "of multiple scattering; 1: single (1)"},
+    {"octave_a", SCENE_IS_NUMBER, 0, 1, NULL,
+     "extinction from one octave to the next (0.5)"},
+    {"octave_b", SCENE_IS_NUMBER, 0, 1, NULL, "the same of light (0.5)"},
+    {"octave_c", SCENE_IS_NUMBER, 0, 1, NULL,
+     "the same of the phase function's parameters (0.5)"},
+    {"sun_colour", SCENE_IS_COLOUR, 0, MAX_COLOUR, NULL,
+     "linear grey or r,g,b (1)"},
+    {"exposure", SCENE_IS_NUMBER, 1.0 / 256, 16, NULL,
+     "of cloud and sky, not of background (1)"},
+    {"ambient", SCENE_IS_WORD, 0, 0, "none constant gradient cube",
+     "light from all around (none)"},
+    {"ambient_colour", SCENE_IS_COLOUR, 0, MAX_COLOUR, NULL,
+     "of constant (0.3)"},
+    {"ambient_top", SCENE_IS_COLOUR, 0, MAX_COLOUR, NULL,
+     "of gradient, upper end of the box (0.3)"},
+    {"ambient_bottom", SCENE_IS_COLOUR, 0, MAX_COLOUR, NULL,
+     "the same, lower end (0.1)"},
+    {"ambient_px", SCENE_IS_COLOUR, 0, MAX_COLOUR, NULL,
+     "of cube, from the world's +X (0.2)"},
+    {"ambient_nx", SCENE_IS_COLOUR, 0, MAX_COLOUR, NULL, "from -X (0.2)"},
+    {"ambient_py", SCENE_IS_COLOUR, 0, MAX_COLOUR, NULL, "from +Y (0.3)"},
+    {"ambient_ny", SCENE_IS_COLOUR, 0, MAX_COLOUR, NULL, "from -Y (0.1)"},
+    {"ambient_pz", SCENE_IS_COLOUR, 0, MAX_COLOUR, NULL, "from +Z (0.2)"},
+    {"ambient_nz", SCENE_IS_COLOUR, 0, MAX_COLOUR, NULL, "from -Z (0.2)"},
+    {"visibility", SCENE_IS_WORD, 0, 0, "open sampled baked",
+     "what a sample sees of ambient light (open)"},
+    {"visibility_samples", SCENE_IS_INTEGER, 0, 16, NULL,
+     "of sampled, doubling distance (to cross the box)"},
+    {"visibility_step", SCENE_IS_NUMBER, 0.0625, 256, NULL,
+     "voxels to the first of them (2)"},
+    {"cache_spacing", SCENE_IS_WORD, 0, 0, "auto 2 4 8",
+     "voxels between points of light = cache (auto: of the baked one, or 4)"},
+    {"sky", SCENE_IS_WORD, 0, 0, "off on",
+     "a sky in the place of background (off)"},
+    {"sky_zenith", SCENE_IS_COLOUR, 0, MAX_COLOUR, NULL,
+     "its colour on top (0.1,0.22,0.5)"},
+    {"sky_horizon", SCENE_IS_COLOUR, 0, MAX_COLOUR, NULL,
+     "above the horizon (0.45,0.55,0.65)"},
+    {"sky_ground", SCENE_IS_COLOUR, 0, MAX_COLOUR, NULL,
+     "below the horizon (0.12,0.12,0.11)"},
+    {"sun_disc", SCENE_IS_COLOUR, 0, MAX_COLOUR, NULL,
+     "of the sun in the sky, added (8)"},
+    {"sun_size", SCENE_IS_NUMBER, 0, 45, NULL,
+     "radius of that disc, degrees; 0: none (0.27)"},
+    {"haze", SCENE_IS_NUMBER, 0, 65535, NULL,
+     "voxels in which the volume fades to 1/e; 0: never (0)"},
+    {"dither", SCENE_IS_WORD, 0, 0, "off on",
+     "of pixels with few bits, see --pixels (off)"},
 };
 
 void scene_print_keys(FILE *to)
@@ -105,16 +162,14 @@ static bool read_number(const char **text, double *out)
     return end != digits && *end == '\0' && isfinite(*out);
 }
 
-/* Up to three numbers separated by commas, spaces or `also`; how many there
- * were, or -1 on anything else. */
-static int read_numbers(const char *text, double out[3], char also)
+int scene_read_numbers(const char *text, double *out, int most, char also)
 {
     int n = 0;
     for (;;) {
         text += strspn(text, " \t");
         if (*text == '\0')
             return n;
-        if (n == 3 || !read_number(&text, &out[n]))
+        if (n == most || !read_number(&text, &out[n]))
             return -1;
         n++;
         text += strspn(text, " \t");
@@ -125,7 +180,7 @@ static int read_numbers(const char *text, double out[3], char also)
     }
 }
 
-static int word_index(const char *words, const char *word)
+int scene_word_index(const char *words, const char *word)
 {
     size_t n = strlen(word);
     for (int i = 0; *words; i++) {
@@ -136,6 +191,30 @@ static int word_index(const char *words, const char *word)
         words += strspn(words, " ");
     }
     return -1;
+}
+
+void scene_print_word(FILE *to, const char *words, unsigned index)
+{
+    for (; index > 0; index--) {
+        words += strcspn(words, " ");
+        words += strspn(words, " ");
+    }
+    fprintf(to, "%.*s", (int)strcspn(words, " "), words);
+}
+
+void scene_print_number(FILE *to, double value)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%.9g", value);
+    if (strtod(text, NULL) != value)
+        snprintf(text, sizeof text, "%.17g", value);
+    fputs(text, to);
+}
+
+bool scene_key_moves(int key)
+{
+    return scene_keys[key].kind != SCENE_IS_WORD &&
+           scene_keys[key].kind != SCENE_IS_PHASE;
 }
 
 static const char *wanted(enum scene_kind kind)
@@ -161,12 +240,12 @@ static bool count_is_right(enum scene_kind kind, int n)
     }
 }
 
-int scene_read_value(int key, const char *text, double out[3],
+int scene_read_value(int key, const char *text, double out[SCENE_VALUES],
                      const char *where, char *err, size_t err_size)
 {
     const struct scene_key_info *k = &scene_keys[key];
     if (k->kind == SCENE_IS_WORD) {
-        int word = word_index(k->words, text);
+        int word = scene_word_index(k->words, text);
         if (word < 0) {
             snprintf(err, err_size, "%s: %s is one of %s, not '%.40s'", where,
                      k->name, k->words, text);
@@ -175,7 +254,10 @@ int scene_read_value(int key, const char *text, double out[3],
         out[0] = word;
         return 0;
     }
-    int n = read_numbers(text, out, k->kind == SCENE_IS_SIZE ? 'x' : '\0');
+    if (k->kind == SCENE_IS_PHASE)
+        return scene_phase_read(text, out, where, err, err_size);
+    int n =
+        scene_read_numbers(text, out, 3, k->kind == SCENE_IS_SIZE ? 'x' : '\0');
     bool whole = k->kind == SCENE_IS_INTEGER || k->kind == SCENE_IS_SIZE;
     bool good = count_is_right(k->kind, n);
     for (int i = 0; good && i < n; i++)

@@ -16,7 +16,8 @@ enum scene_kind {
     SCENE_IS_ANGLES,
     SCENE_IS_SIZE,
     SCENE_IS_COLOUR,
-    SCENE_IS_WORD
+    SCENE_IS_WORD,
+    SCENE_IS_PHASE /* a word and its numbers: scene_phase.h */
 };
 
 struct scene_key_info {
@@ -29,9 +30,13 @@ struct scene_key_info {
 
 extern const struct scene_key_info scene_keys[SCENE_KEYS];
 
-/* Text to the value of a key, up to three numbers. */
-int scene_read_value(int key, const char *text, double out[3],
+/* Text to the value of a key. */
+int scene_read_value(int key, const char *text, double out[SCENE_VALUES],
                      const char *where, char *err, size_t err_size);
+
+/* Up to `most` numbers separated by commas, spaces or `also`; how many there
+ * were, or -1 on anything else. */
+int scene_read_numbers(const char *text, double *out, int most, char also);
 
 /* A line without its comment; what does not fit is left for the next, for
  * scene_check_line to refuse. False at the end of the file. */
@@ -40,6 +45,21 @@ bool scene_next_line(FILE *f, char line[SCENE_LINE_SIZE + 1]);
 /* Short enough, and nothing in it that would upset a terminal. */
 int scene_check_line(const char *text, const char *where, char *err,
                      size_t err_size);
+
+/* Does a key's value go from one keyframe to the next by and by? */
+bool scene_key_moves(int key);
+
+/* Place of a word in a list with spaces between, or -1; and the other way. */
+int scene_word_index(const char *words, const char *word);
+void scene_print_word(FILE *to, const char *words, unsigned index);
+
+/* As few digits as scene_read_value needs to get the same number. */
+void scene_print_number(FILE *to, double value);
+
+/* A direction of any length in world axes, as Q2.30 in the pool's; -1 when it
+ * has none. */
+int scene_direction(const struct volume_file *file, const double v[3],
+                    int32_t out[3]);
 
 /* Cuts spaces off both ends, in place. */
 char *scene_trimmed(char *s);

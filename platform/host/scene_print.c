@@ -7,6 +7,7 @@
 
 #include "noises.h"
 #include "scene_keys.h"
+#include "scene_light.h"
 
 static void print_point(FILE *to, const char *name, const int32_t q[3],
                         const struct volume_file *file)
@@ -26,13 +27,9 @@ static void print_q32(FILE *to, int key, uint64_t value)
 
 static void print_word(FILE *to, int key, unsigned value)
 {
-    const char *words = scene_keys[key].words;
-    for (; value > 0; value--) {
-        words += strcspn(words, " ");
-        words += strspn(words, " ");
-    }
-    fprintf(to, "%s = %.*s\n", scene_keys[key].name, (int)strcspn(words, " "),
-            words);
+    fprintf(to, "%s = ", scene_keys[key].name);
+    scene_print_word(to, scene_keys[key].words, value);
+    fputc('\n', to);
 }
 
 /* A direction turned from pool to world axes. */
@@ -65,6 +62,7 @@ static void print_passes(FILE *to, const struct brume_scene *s)
 }
 
 void scene_print(FILE *to, const struct brume_scene *scene,
+                 const struct scene_light *light,
                  const struct volume_file *file)
 {
     const struct brume_scene *s = scene;
@@ -98,4 +96,5 @@ void scene_print(FILE *to, const struct brume_scene *scene,
     print_word(to, SCENE_OUTPUT, s->output);
     print_word(to, SCENE_SKIP, s->skip);
     print_passes(to, s);
+    scene_light_print(to, light);
 }

@@ -7,21 +7,26 @@
 #include <unistd.h>
 
 #include "deflate.h"
+#include "panel.h"
 #include "pattern.h"
 #include "scene_keys.h"
+#include "sun_cache.h"
 
 /* While it is drawn. */
 struct run {
     const struct sequence *sequence;
     struct scene_settings settings; /* of the frame */
     struct scene_settings base;     /* of all frames */
+    struct scene_light light;       /* of the frame */
+    struct sun_cache sun;
     struct volume_file file;
     struct volume_file before; /* its transform and origin, not its bytes */
     int32_t anchor[3];         /* of this one, from the first of its grid */
     bool jumps; /* voxels lie elsewhere than those of the frame before */
-    bool is_float, grey;
+    bool is_float;
+    int pixel_format;
     struct image image;
-    uint16_t *wide; /* pixels of 16 bits, for floats */
+    void *packed; /* pixels that are not yet those of the image, or NULL */
     struct renderer *renderer;
     struct movie *movie;
     struct profile frame, sum;
@@ -87,6 +92,7 @@ static int open_volume(struct run *r, uint32_t frame)
     if (r->file.data != NULL && !changes_volume(s))
         return 0;
     volume_file_close(&r->file);
+    sun_cache_free(&r->sun);
     if (changes_volume(s)) {
         pattern_name(s->volume, frame, name);
         path = name;
@@ -112,7 +118,8 @@ static int scene_of(struct run *r, uint32_t frame, struct brume_scene *scene)
     }
     if (s->path != NULL)
         path_apply(s->path, frame, &r->settings);
-    if (scene_apply(&r->settings, &r->file, scene, r->err, r->err_size) != 0)
+    if (scene_apply(&r->settings, &r->file, scene, &r->light, r->err,
+                    r->err_size) != 0)
         return -1;
     if (r->is_float)
         scene->output = BRUME_LINEAR;
@@ -129,11 +136,12 @@ static int hold_defaults(struct run *r)
     size_t size = 0;
     if (!changes_volume(r->sequence))
         return 0;
-    if (scene_apply(&r->base, &r->file, &scene, r->err, r->err_size) != 0)
+    if (scene_apply(&r->base, &r->file, &scene, &r->light, r->err,
+                    r->err_size) != 0)
         return -1;
     FILE *to = open_memstream(&text, &size);
     if (to != NULL) {
-        scene_print(to, &scene, &r->file);
+        scene_print(to, &scene, &r->light, &r->file);
         fclose(to);
     }
     int result =
@@ -159,53 +167,94 @@ static int check_scenes(struct run *r)
 
 /// Pixels ///
 
+/* Is there no colour in any of its pictures? */
 static bool is_grey(const struct run *r, const struct brume_scene *scene)
 {
     const struct path *path = r->sequence->path;
     const uint32_t *b = scene->background;
-    return b[0] == b[1] && b[1] == b[2] &&
-           (path == NULL || !path_sets(path, SCENE_BACKGROUND));
+    for (int key = 0; path != NULL && key < SCENE_KEYS; key++)
+        if (path_sets(path, key) && (scene_keys[key].kind == SCENE_IS_COLOUR ||
+                                     key == SCENE_SKY || key == SCENE_AMBIENT))
+            return false;
+    if (scene->lighting != NULL && scene_light_has_colour(&r->light))
+        return false;
+    return (scene->lighting != NULL && scene->lighting->sky) ||
+           (b[0] == b[1] && b[1] == b[2]);
 }
 
+/* What the pixels are drawn in. */
+static int pixel_format_of(const struct run *r, const struct brume_scene *scene)
+{
+    if (r->sequence->pixels >= 0)
+        return r->sequence->pixels;
+    if (is_grey(r, scene))
+        return r->is_float ? BRUME_L16 : BRUME_L8;
+    return r->is_float ? BRUME_RGB161616 : BRUME_RGB888;
+}
+
+static int channels_of(int pixel_format)
+{
+    if (pixel_format == BRUME_L16)
+        return 1;
+    return pixel_format == BRUME_RGB161616 ? 3 : panel_channels(pixel_format);
+}
+
+/* Does the file hold what a panel's format has? */
+static int check_pixels(struct run *r, const struct movie_format *format)
+{
+    const struct sequence *s = r->sequence;
+    bool png = format->kind == MOVIE_APNG ||
+               (format->kind <= MOVIE_PICTURES && format->picture == IMAGE_PNG);
+    if (s->pixels < 0 ||
+        !(r->is_float || (s->out && !png && s->pixels == BRUME_RGBA8888)))
+        return 0;
+    snprintf(r->err, r->err_size, "%.200s: --pixels %s", s->out,
+             r->is_float ? "is of 8-bit pictures, not of a .pfm"
+                         : "rgba8888 goes into .png and .apng alone");
+    return -1;
+}
+
+/* Pixels of the core that are the image's as they are need no second place. */
 static int new_image(struct run *r, const struct brume_scene *scene)
 {
-    int channels = r->grey ? 1 : 3;
+    int format = r->pixel_format, channels = channels_of(format);
     struct image *image = &r->image;
-    if (!r->is_float)
-        return image_new_u8(image, scene->width, scene->height, channels,
-                            r->err, r->err_size);
-    if (image_new_f32(image, scene->width, scene->height, channels, r->err,
-                      r->err_size) != 0)
+    if (r->is_float ? image_new_f32(image, scene->width, scene->height,
+                                    channels, r->err, r->err_size) != 0
+                    : image_new_u8(image, scene->width, scene->height, channels,
+                                   r->err, r->err_size) != 0)
         return -1;
-    r->wide = malloc(image_samples(image) * sizeof *r->wide);
-    if (r->wide != NULL)
+    if (format == BRUME_L8 || format == BRUME_RGB888)
+        return 0;
+    r->packed = malloc(brume_row_bytes(format, scene->width) * scene->height);
+    if (r->packed != NULL)
         return 0;
     snprintf(r->err, r->err_size, "not enough memory for %dx%d", scene->width,
              scene->height);
     return -1;
 }
 
-/* Into 8 bits, or through 16 bits into floats, in which 65535 is 1. */
+/* Pixels of the core's formats, made the image's: 65535 is 1 in floats. */
 static int draw(struct run *r, const struct brume_scene *scene)
 {
-    struct render_target target;
-    size_t row = (size_t)r->image.width * (size_t)r->image.channels;
-    if (r->is_float) {
-        target.pixel_format = r->grey ? BRUME_L16 : BRUME_RGB161616;
-        target.dst = r->wide;
-        target.stride = row * sizeof *r->wide;
-    } else {
-        target.pixel_format = r->grey ? BRUME_L8 : BRUME_RGB888;
-        target.dst = r->image.u8;
-        target.stride = row;
-    }
+    const struct render_target target = {
+        r->pixel_format, r->packed ? r->packed : r->image.u8,
+        brume_row_bytes(r->pixel_format, scene->width)};
+    const uint16_t *wide = r->packed;
+    double now = r->sequence->profile ? profile_process() : 0;
+    if (sun_cache_prepare(&r->sun, renderer_pool(r->renderer), &r->file.volume,
+                          scene, &r->light, r->err, r->err_size) != 0)
+        return -1;
+    if (r->sequence->profile)
+        r->frame.busy[PASS_BEGIN] += profile_process() - now;
     if (renderer_draw(r->renderer, scene, &target, r->err, r->err_size) != 0)
         return -1;
     for (size_t i = 0; r->is_float && i < image_samples(&r->image); i++)
-        r->image.f32[i] = (float)(r->wide[i] / 65535.0);
+        r->image.f32[i] = (float)(wide[i] / 65535.0);
+    if (r->packed != NULL && !r->is_float)
+        panel_expand(r->pixel_format, r->packed, &r->image);
     return 0;
 }
-
 static int print_hash(const struct run *r, uint32_t frame)
 {
     uint32_t crc = deflate_crc32(0, r->image.u8, image_samples(&r->image));
@@ -309,14 +358,15 @@ static int prepare(struct run *r, struct movie_format *format)
                  r->is_float ? "a .pfm" : "a film on stdout");
         return -1;
     }
-    if (check_volumes(s, r->err, r->err_size) != 0 ||
+    if (check_pixels(r, format) != 0 ||
+        check_volumes(s, r->err, r->err_size) != 0 ||
         open_volume(r, s->first) != 0 || hold_defaults(r) != 0 ||
         check_scenes(r) != 0 || scene_of(r, s->first, &scene) != 0)
         return -1;
-    r->grey = is_grey(r, &scene);
+    r->pixel_format = pixel_format_of(r, &scene);
     format->width = scene.width;
     format->height = scene.height;
-    format->channels = r->grey ? 1 : 3;
+    format->channels = channels_of(r->pixel_format);
     format->frames = s->last - s->first + 1;
     format->rate[0] = s->rate[0];
     format->rate[1] = s->rate[1];
@@ -342,8 +392,9 @@ int sequence_run(const struct sequence *sequence, char *err, size_t err_size)
         status = run_frames(r, &format);
     renderer_free(r->renderer);
     volume_file_close(&r->file);
+    sun_cache_free(&r->sun);
     image_free(&r->image);
-    free(r->wide);
+    free(r->packed);
     free(r);
     return status;
 }

@@ -21,6 +21,7 @@ struct sequence {
     unsigned rate[2]; /* frames per second, a fraction */
     int threads;
     enum wide_kernel kernel;
+    int pixels;         /* enum brume_pixel_format; -1: what suits the file */
     bool hash, profile; /* to stdout; to stderr */
 };
 

@@ -60,7 +60,7 @@ static int64_t brick_of(const struct brume_volume *v, uint64_t cell)
 static uint32_t code_of(const struct brume_volume *v, uint32_t brick,
                         uint32_t i)
 {
-    struct kernel k = {v->format, v->side, false, false, false};
+    struct kernel k = KERNEL_OF(v->format, v->side - 8u, false, false, false);
     return code_at(v, brick, i, k);
 }
 
@@ -132,7 +132,7 @@ static void copy_halves(struct wide_copy *c, const uint32_t cell[3],
                         uint32_t brick, void *to)
 {
     const struct brume_volume *v = c->volume;
-    struct kernel k = {v->format, v->side, false, false, false};
+    struct kernel k = KERNEL_OF(v->format, v->side - 8u, false, false, false);
     uint16_t *page = (uint16_t *)to + first_in_pages(v, cell);
     for (uint32_t i = 0; i < 512; i++) {
         uint32_t x = i & 7u, y = i >> 3 & 7u, z = i >> 6;

@@ -1,109 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The light half of the wide march, and what both halves share: the state of a
- * patch of rays, and leaping. Part of wide_march.c.
+ * The light half of the wide march: density towards the sun, by the lookups of
+ * a kernel. Part of wide_march.c.
  */
 #ifndef BRUME_HOST_WIDE_LIGHT_H
 #define BRUME_HOST_WIDE_LIGHT_H
 
-#include "wide_lookup.h"
-#include "wide_rays.h"
-
-#define TILE_WIDTH 4u
-#define TILE_HEIGHT (WIDE_LANES / TILE_WIDTH)
-#define PATCH_WIDTH 16u
-#define PATCH_HEIGHT 16u
-#define PATCH (PATCH_WIDTH * PATCH_HEIGHT)
-#define WAVE (LOOKUPS * WIDE_LANES)
-#define QUEUE (2u * WAVE)
-
-/* Arrays that are written at any place have room for a vector more. */
-#define ROOM(n) [(n) + WIDE_LANES]
-
-/* Lit samples, which wait for light. */
-struct queue {
-    uint32_t p[3] ROOM(QUEUE);
-    uint32_t lost ROOM(QUEUE), ray ROOM(QUEUE);
-    uint32_t light_first[3] ROOM(QUEUE); /* if jittered */
-    uint32_t count;
-} __attribute__((aligned(64)));
-
-/* The rays of a rectangle, group by group, and the groups under way. */
-struct patch {
-    const struct wide_copy *copy;
-    void (*light)(const struct brume_frame *f, struct patch *b, bool all);
-    uint32_t count; /* groups of the wave: numbers of their first rays */
-    uint32_t first[LOOKUPS];
-    struct lookups lookups;
-    struct queue queue;
-    uint32_t p[3] ROOM(PATCH), move[3] ROOM(PATCH);
-    uint32_t inverse[3] ROOM(PATCH); /* floats: (1 - 2^-20) / |move| */
-    uint32_t left ROOM(PATCH);       /* samples in the pool; 0 when ended */
-    uint32_t samples ROOM(PATCH);    /* that there were; of the ray */
-    uint32_t t ROOM(PATCH);          /* of the first */
-    uint32_t transmittance ROOM(PATCH), moment ROOM(PATCH),
-        light_of ROOM(PATCH);
-    uint32_t light_first[3] ROOM(PATCH); /* if jittered */
-} __attribute__((aligned(64)));
-
-/// Leaping ///
-
-LANES_INLINE lanes_float way_of(lanes p, lanes move, lanes far, uint32_t margin,
-                                lanes inverse)
-{
-    lanes forwards = ~signs_of(move);
-    lanes room = far + ((p ^ forwards) & 0x7ffffu) - (forwards & margin);
-    return lanes_to_float(room) * (lanes_float)inverse;
-}
-
-/* (1 - 2^-20) / |move|, as a float. */
-LANES_INLINE lanes inverse_of(lanes move, bool skip)
-{
-    lanes_float m = lanes_to_float(lanes_max(magnitudes(move), lanes_of(1)));
-    return (lanes)((skip ? 0x0.fffffp0f : 0.0f) / m);
-}
-
-/* As leap of the core, but now and then one less: the inverse is too small by
- * more than floats are rounded, which costs a lookup and no pixel. */
-LANES_INLINE lanes leap_lanes(const struct brume_frame *f, const lanes p[3],
-                              const lanes move[3], const lanes inverse[3],
-                              lanes cell, struct kernel k)
-{
-    uint32_t margin = k.trilinear ? f->leap_margin : 0;
-    lanes far = (cell << 19) - (1u << 19);
-    lanes_float n = way_of(p[0], move[0], far, margin, inverse[0]);
-    n = lanes_min_float(n, way_of(p[1], move[1], far, margin, inverse[1]));
-    n = lanes_min_float(n, way_of(p[2], move[2], far, margin, inverse[2]));
-    return lanes_from_float(n) + 1u;
-}
+#include "wide_lit.h"
 
 /// Light ///
-
-/* Light rays of doubling steps. */
-struct light_lanes {
-    lanes first[3];
-    uint32_t samples; /* of all */
-    bool unequal;     /* each has a number of its own: */
-    lanes own;
-};
-
-/* Those of the n samples from number `at` of the queue on. A sample whose
- * distance does not fit the word is not taken; only in pools beyond 16384
- * voxels is it not out of the pool anyway, and the one before it inside. */
-LANES_INLINE void begin_light(struct light_lanes *light,
-                              const struct brume_frame *f,
-                              const struct queue *q, uint32_t at)
-{
-    bool jittered = f->jitter & BRUME_JITTER_LIGHT;
-    uint32_t far = f->limit[0] | f->limit[1] | f->limit[2];
-    light->samples = jittered ? f->light_samples : f->light.samples;
-    light->unequal = jittered && far > 1u << 30;
-    for (int i = 0; i < 3; i++)
-        light->first[i] = jittered ? lanes_load(q->light_first[i] + at)
-                                   : lanes_of((uint32_t)f->light.first[i]);
-    light->own = light->unequal ? light_samples_of(light->first, f)
-                                : lanes_of(light->samples);
-}
 
 /* Sum of d * 2^i over the samples in the pool. */
 LANES_INLINE lanes sum_log_lanes(const struct brume_frame *f,
@@ -126,7 +31,7 @@ LANES_INLINE lanes sum_log_lanes(const struct brume_frame *f,
             wanted = mask_and(wanted, mask_less(lanes_of(n), light->own));
         if (!mask_any(wanted))
             break;
-        want(l, n, s, at, wanted, k);
+        want_moved(l, n, s, at, light->moved, wanted, k);
     }
     look_up(l, n, s, k);
     for (uint32_t i = 0; i < n; i++)
@@ -134,14 +39,30 @@ LANES_INLINE lanes sum_log_lanes(const struct brume_frame *f,
     return sum;
 }
 
-LANES_INLINE lanes sun_transmittances(const struct brume_frame *f, lanes sum)
+/* The sums of samples from number `at` of the queue on over b->lit.ways. */
+LANES_INLINE lanes sum_of_ways(const struct brume_frame *f,
+                               const struct source *s, struct patch *b,
+                               uint32_t at, struct kernel k)
 {
-    lanes_mask black = mask_less(lanes_of(f->tau_limit), sum);
-    lanes tau = lanes_mul_hi(sum << f->tau_shift, lanes_of(f->tau_m)) + 1u;
-    tau = lanes_unless(black, tau >> 1);
-    lanes s = lanes_of_table16(brume_exp_coarse, tau >> 8) *
-              lanes_of_table16(brume_exp_fine, tau & 255u);
-    return lanes_unless(black, s);
+    struct ways *w = &b->lit.ways;
+    lanes sum = lanes_of(0), moved[3] = {{0}}, p[3];
+    lanes_mask wanted = w->wanted;
+    uint32_t n;
+    for (int i = 0; i < 3 && s->stochastic; i++)
+        moved[i] = lanes_load(b->queue.moved[i] + at);
+    for (n = 0; n < w->count; n++) {
+        for (int i = 0; i < 3; i++)
+            p[i] = lanes_load(b->queue.p[i] + at) + lanes_load(w->way[n][i]);
+        wanted = mask_and(wanted, inside_lanes(f, p[0], p[1], p[2]));
+        if (!mask_any(wanted))
+            break;
+        want_moved(&b->lookups, n, s, p, moved, wanted, k);
+    }
+    look_up(&b->lookups, n, s, k);
+    for (uint32_t i = 0; i < n; i++)
+        sum += lanes_load(b->lookups.d[i]) << w->shift[i];
+    w->wanted = wanted;
+    return sum;
 }
 
 /* Adds the light of samples whose sums are known, from number `at` of the
@@ -149,11 +70,13 @@ LANES_INLINE lanes sun_transmittances(const struct brume_frame *f, lanes sum)
 LANES_INLINE void add_light(const struct brume_frame *f, struct patch *b,
                             uint32_t at, uint32_t n, lanes sum)
 {
-    uint32_t got[WIDE_LANES] __attribute__((aligned(64)));
+    if (f->lit.on) {
+        add_octaves(f, b, at, n, sum);
+        return;
+    }
     lanes lost = lanes_load(b->queue.lost + at);
-    lanes_spill(got, lanes_mul_hi(lost, sun_transmittances(f, sum)));
-    for (uint32_t i = 0; i < n; i++)
-        b->light_of[b->queue.ray[at + i]] += got[i];
+    add_to_rays(b->sun[0], &b->queue, at, n,
+                lanes_mul_hi(lost, sun_transmittances(&f->tau, sum)));
 }
 
 LANES_INLINE void light_log(const struct brume_frame *f, const struct source *s,
@@ -211,16 +134,17 @@ LANES_INLINE void fill_light_wave(const struct brume_frame *f,
 /* Wants the next samples of group g, and leaves it at the last of them. */
 LANES_INLINE void want_light_group(const struct brume_frame *f,
                                    const struct source *s, struct light_wave *w,
-                                   struct lookups *l, uint32_t g,
-                                   struct kernel k)
+                                   struct patch *b, uint32_t g, struct kernel k)
 {
-    lanes left = lanes_load(w->left[g]), p[3];
+    lanes left = lanes_load(w->left[g]), p[3], moved[3] = {{0}};
     for (int i = 0; i < 3; i++)
         p[i] = lanes_load(w->p[i][g]);
+    for (int i = 0; i < 3 && s->stochastic; i++)
+        moved[i] = lanes_load(b->queue.moved[i] + w->first[g]);
     for (uint32_t n = 0;; n++) {
         lanes_mask on = mask_and(mask_less(lanes_of(n), left),
                                  inside_lanes(f, p[0], p[1], p[2]));
-        want(l, g * AHEAD + n, s, p, on, k);
+        want_moved(&b->lookups, g * AHEAD + n, s, p, moved, on, k);
         if (n == AHEAD - 1) {
             for (int i = 0; i < 3; i++)
                 lanes_store(w->p[i][g], p[i]);
@@ -236,7 +160,7 @@ LANES_INLINE void want_light_group(const struct brume_frame *f,
  * it has ended: then its sums are in place. */
 LANES_INLINE bool step_light_group(const struct source *s, struct light_wave *w,
                                    struct lookups *l, uint32_t g, uint32_t to,
-                                   uint32_t *sums, struct kernel k)
+                                   uint32_t *sums)
 {
     lanes left = lanes_load(w->left[g]), m = lanes_of(1), p[3];
     lanes sum = lanes_load(w->sum[g]);
@@ -249,11 +173,11 @@ LANES_INLINE bool step_light_group(const struct source *s, struct light_wave *w,
     }
     for (int i = 0; i < 3; i++)
         p[i] = lanes_load(w->p[i][g]);
-    lanes cell = cells_to_leap(l, g * AHEAD + AHEAD - 1, s, p, on, k);
+    lanes cell = cells_to_leap(l, g * AHEAD + AHEAD - 1, s, p, on);
     lanes_mask empty = mask_and(on, mask_high(cell));
     if (mask_any(empty))
-        m = lanes_select(
-            empty, leap_lanes(s->frame, p, w->move, w->inverse, cell, k), m);
+        m = lanes_select(empty,
+                         leap_lanes(s->frame, p, w->move, w->inverse, cell), m);
     w->first[to] = w->first[g];
     for (int i = 0; i < 3; i++)
         lanes_store(w->p[i][to], p[i] + m * w->move[i]);
@@ -275,11 +199,11 @@ LANES_INLINE void light_uniform(const struct brume_frame *f,
         if (w.count == 0)
             break;
         for (uint32_t g = 0; g < w.count; g++)
-            want_light_group(f, s, &w, &b->lookups, g, k);
+            want_light_group(f, s, &w, b, g, k);
         look_up(&b->lookups, w.count * AHEAD, s, k);
         uint32_t to = 0;
         for (uint32_t g = 0; g < w.count; g++)
-            to += step_light_group(s, &w, &b->lookups, g, to, sums, k);
+            to += step_light_group(s, &w, &b->lookups, g, to, sums);
         w.count = to;
     }
     for (uint32_t at = 0; at < end; at += WIDE_LANES)
@@ -296,12 +220,16 @@ LANES_INLINE void light_queue(const struct brume_frame *f,
     uint32_t end = all ? q->count : q->count / WIDE_LANES * WIDE_LANES;
     uint32_t rest = q->count - end;
     struct source s = source_of(f, c, k);
-    if (k.uniform)
+    if (f->lit.on && f->lit.light >= BRUME_NO_LIGHT)
+        light_by_grids(f, b, end);
+    else if (k.uniform)
         light_uniform(f, &s, b, end, k);
     else
         for (uint32_t at = 0; at < end; at += WIDE_LANES)
             light_log(f, &s, b, at,
                       end - at < WIDE_LANES ? end - at : WIDE_LANES, k);
+    if (f->lit.on)
+        light_from_sky(f, b, end);
     if (rest != 0) {
         for (int i = 0; i < 3; i++)
             lanes_store(q->p[i], lanes_load(q->p[i] + end));
@@ -309,6 +237,8 @@ LANES_INLINE void light_queue(const struct brume_frame *f,
         lanes_store(q->ray, lanes_load(q->ray + end));
         for (int i = 0; i < 3; i++)
             lanes_store(q->light_first[i], lanes_load(q->light_first[i] + end));
+        if (f->lit.on)
+            keep_lit(q, end);
     }
     q->count = rest;
 }

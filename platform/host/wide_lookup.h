@@ -429,6 +429,7 @@ struct source {
     const struct brume_frame *frame;
     const struct wide_copy *copy;
     struct copied copied;
+    bool stochastic; /* lookups are moved: see want_moved */
 };
 
 LANES_INLINE struct source source_of(const struct brume_frame *f,
@@ -437,6 +438,7 @@ LANES_INLINE struct source source_of(const struct brume_frame *f,
     struct source s;
     s.frame = f;
     s.copy = c;
+    s.stochastic = !k.trilinear && f->lit.stochastic;
     if (c != NULL)
         s.copied = copied_of(f, c, k);
     return s;
@@ -450,6 +452,19 @@ LANES_INLINE void want(struct lookups *l, uint32_t g, const struct source *s,
         want_copied(l, g, &s->copied, p[0], p[1], p[2], wanted, k);
     else
         want_cell(l, g, s->frame, p[0], p[1], p[2], wanted, k);
+}
+
+/* The same beside p where lookups are stochastic. Then the cells that are
+ * looked up are not those to leap from. */
+LANES_INLINE void want_moved(struct lookups *l, uint32_t g,
+                             const struct source *s, const lanes p[3],
+                             const lanes moved[3], lanes_mask wanted,
+                             struct kernel k)
+{
+    lanes at[3];
+    for (int i = 0; i < 3; i++)
+        at[i] = s->stochastic ? p[i] + moved[i] : p[i];
+    want(l, g, s, at, wanted, k);
 }
 
 /* Densities of the first n groups. */
@@ -472,17 +487,17 @@ LANES_INLINE void look_up(struct lookups *l, uint32_t n, const struct source *s,
  * 0, the others have 0. */
 LANES_INLINE lanes cells_to_leap(const struct lookups *l, uint32_t g,
                                  const struct source *s, const lanes p[3],
-                                 lanes_mask wanted, struct kernel k)
+                                 lanes_mask wanted)
 {
     const struct brume_frame *f = s->frame;
-    if (s->copy == NULL)
+    if (s->copy == NULL && !s->stochastic)
         return lanes_load(l->cell[g]);
     wanted = mask_and(wanted, mask_equal(lanes_load(l->d[g]), lanes_of(0)));
     if (!f->skip || !mask_any(wanted))
         return lanes_of(0);
     lanes at = lanes_where(wanted, cell_number(f->volume, p[0], p[1], p[2]));
     lanes cell = gather_words(f->volume->cells, at);
-    if (k.trilinear && f->leap_margin != 0) /* beside a brick: not here */
+    if (f->leap_margin != 0) /* beside a brick: not here */
         wanted = mask_less_those(
             wanted, mask_and(on_high_faces(p[0], p[1], p[2]),
                              mask_less(cell, lanes_of(BRUME_CELL_EMPTY + 2u))));

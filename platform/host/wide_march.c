@@ -44,6 +44,7 @@ LANES_INLINE lanes_mask lose_light(const struct brume_frame *f, struct patch *b,
                                    uint32_t ray, const lanes p[3], lanes left,
                                    lanes d, lanes_mask on, struct kernel k)
 {
+    uint32_t at = b->queue.count;
     lanes_mask lit = mask_and(on, mask_less(lanes_of(f->min_density), d));
     if (!mask_any(lit))
         return on;
@@ -51,6 +52,8 @@ LANES_INLINE lanes_mask lose_light(const struct brume_frame *f, struct patch *b,
     lanes lost =
         lanes_where(lit, lanes_mul_hi(transmittance, opacities(f, d, k)));
     push(b, p, lost, ray, lit, !k.uniform && f->jitter & BRUME_JITTER_LIGHT);
+    if (f->lit.on)
+        push_lit(f, b, at, ray, d, lanes_load(b->samples + ray) - left, lit);
     transmittance -= lost;
     lanes_store(b->transmittance + ray, transmittance);
     if (f->depth) {
@@ -85,13 +88,13 @@ LANES_INLINE bool step_group(const struct brume_frame *f,
     }
     on = mask_and(on, mask_less(lanes_of(AHEAD_VIEW - 1), left));
     left -= AHEAD_VIEW - 1;
-    lanes cell = cells_to_leap(&b->lookups, g * AHEAD_VIEW + AHEAD_VIEW - 1, s,
-                               p, on, k);
+    lanes cell =
+        cells_to_leap(&b->lookups, g * AHEAD_VIEW + AHEAD_VIEW - 1, s, p, on);
     lanes_mask empty = mask_high(cell);
     if (mask_any(empty)) {
         for (int i = 0; i < 3; i++)
             inverse[i] = lanes_load(b->inverse[i] + ray);
-        m = lanes_select(empty, leap_lanes(f, p, move, inverse, cell, k), m);
+        m = lanes_select(empty, leap_lanes(f, p, move, inverse, cell), m);
         for (int i = 0; i < 3; i++)
             move[i] *= m;
     }
@@ -110,12 +113,15 @@ LANES_INLINE void step_wave(const struct brume_frame *f,
     struct source s = source_of(f, c, k);
     for (uint32_t g = 0; g < b->count; g++) {
         uint32_t ray = b->first[g];
-        lanes p[3], left = lanes_load(b->left + ray);
+        lanes p[3], moved[3] = {{0}}, left = lanes_load(b->left + ray);
         for (int i = 0; i < 3; i++)
             p[i] = lanes_load(b->p[i] + ray);
         for (uint32_t n = 0; n < AHEAD_VIEW; n++) {
-            want(&b->lookups, g * AHEAD_VIEW + n, &s, p,
-                 mask_less(lanes_of(n), left), k);
+            if (s.stochastic)
+                moves_of(moved, b, ray,
+                         lanes_load(b->samples + ray) - left + n);
+            want_moved(&b->lookups, g * AHEAD_VIEW + n, &s, p, moved,
+                       mask_less(lanes_of(n), left), k);
             for (int i = 0; i < 3; i++)
                 p[i] += lanes_load(b->move[i] + ray);
         }
@@ -145,6 +151,8 @@ LANES_INLINE const struct wide_copy *some_copy(const struct wide_copy *c)
 struct march_kernel {
     void (*light)(const struct brume_frame *f, struct patch *b, bool all);
     void (*step)(const struct brume_frame *f, struct patch *b);
+    lanes (*sum_ways)(const struct brume_frame *f, struct patch *b,
+                      uint32_t at);
 };
 
 /* A kernel of its own for each lookup and light; what it reads are the asset's
@@ -156,14 +164,24 @@ struct march_kernel {
     static void NAME(light, format, apron, tri, uni, clamp, copied)( \
         const struct brume_frame *f, struct patch *b, bool all) \
     { \
-        static const struct kernel k = {format, 8 + apron, tri, uni, clamp}; \
+        static const struct kernel k = \
+            KERNEL_OF(format, apron, tri, uni, clamp); \
         light_queue(f, copied ? some_copy(b->copy) : NULL, b, all, k); \
     } \
     static void NAME(step, format, apron, tri, uni, clamp, \
                      copied)(const struct brume_frame *f, struct patch *b) \
     { \
-        static const struct kernel k = {format, 8 + apron, tri, uni, clamp}; \
+        static const struct kernel k = \
+            KERNEL_OF(format, apron, tri, uni, clamp); \
         step_wave(f, copied ? some_copy(b->copy) : NULL, b, k); \
+    } \
+    static lanes NAME(ways, format, apron, tri, uni, clamp, copied)( \
+        const struct brume_frame *f, struct patch *b, uint32_t at) \
+    { \
+        static const struct kernel k = \
+            KERNEL_OF(format, apron, tri, uni, clamp); \
+        struct source s = source_of(f, copied ? some_copy(b->copy) : NULL, k); \
+        return sum_of_ways(f, &s, b, at, k); \
     }
 #define DIRECT_CLAMP(format, apron, tri, uni) \
     KERNEL(format, apron, tri, uni, 0, 0) KERNEL(format, apron, tri, uni, 1, 0)
@@ -189,7 +207,8 @@ ALL_KERNELS
 #define KERNEL(format, apron, tri, uni, clamp, copied) \
     [(copied) << 6 | (format) << 4 | (apron) << 3 | (tri) << 2 | (uni) << 1 | \
         (clamp)] = {NAME(light, format, apron, tri, uni, clamp, copied), \
-                    NAME(step, format, apron, tri, uni, clamp, copied)},
+                    NAME(step, format, apron, tri, uni, clamp, copied), \
+                    NAME(ways, format, apron, tri, uni, clamp, copied)},
 
 static const struct march_kernel k_kernels[128] = {ALL_KERNELS};
 
@@ -197,7 +216,8 @@ static const struct march_kernel k_kernels[128] = {ALL_KERNELS};
 static const struct march_kernel *kernel_of(const struct brume_frame *f,
                                             const struct wide_copy *c)
 {
-    uint32_t id = f->kernel, uniform = id & 2u;
+    bool lit = f->lit.on && f->lit.light == BRUME_UNIFORM;
+    uint32_t id = f->kernel | (lit ? 2u : 0), uniform = id & 2u;
     bool u8 = f->volume->format == BRUME_U8, apron = f->volume->side == 9;
     bool trilinear = id & 4u, clamp = id & 1u;
     const struct march_kernel *direct = &k_kernels[id];
@@ -220,9 +240,13 @@ static const struct march_kernel *kernel_of(const struct brume_frame *f,
 /// Patches ///
 
 /* Rays of a tile that have met nothing yet. */
-static void clear_rays(struct patch *b, uint32_t ray)
+static void clear_rays(const struct brume_frame *f, struct patch *b,
+                       uint32_t ray)
 {
-    lanes_store(b->light_of + ray, lanes_of(0));
+    for (uint32_t i = 0; i < f->lit.octaves; i++)
+        lanes_store(b->sun[i] + ray, lanes_of(0));
+    if (f->lit.on)
+        clear_lit(b, ray);
     lanes_store(b->transmittance + ray, lanes_of(1u << 31));
     lanes_store(b->moment + ray, lanes_of(0));
 }
@@ -238,6 +262,8 @@ static void add_rays(const struct brume_frame *f, struct patch *b, uint32_t ray,
     if (!mask_any(r.alive))
         return;
     b->first[b->count++] = ray;
+    if (f->lit.on)
+        add_lit_rays(f, b, ray, &r);
     if (f->jitter & BRUME_JITTER_LIGHT)
         for (int i = 0; i < 3; i++)
             lanes_store(b->light_first[i] + ray, light_first[i]);
@@ -261,14 +287,19 @@ static void store_rays(const struct brume_frame *f, const struct patch *b,
         if (i >= w || j >= h)
             continue;
         struct brume_radiance *o = out + j * stride + i;
-        uint32_t light = b->light_of[ray];
+        uint32_t light = b->sun[0][ray];
         uint32_t transmittance = b->transmittance[ray];
         o->light = (mul_hi_floor(light << 2, f->albedo << 2) + 1u) >> 1;
         o->transmittance = (transmittance + 0x4000u) >> 15;
         o->depth = 0;
+#if BRUME_WITH_COLOUR
+        o->green = o->blue = 0;
+#endif
         if (f->depth)
             o->depth = brume_mean_depth(f, b->t[ray], b->moment[ray],
                                         (1u << 31) - transmittance);
+        if (f->lit.on && transmittance != 1u << 31)
+            finish_lit(f, b, ray, o);
     }
 }
 
@@ -292,6 +323,7 @@ static void march_patch(const struct brume_frame *f, struct patch *b,
     uint32_t ray = 0;
     bool miss = false;
     b->light = k->light;
+    b->sum_ways = k->sum_ways;
     b->count = b->queue.count = 0;
     for (uint32_t j = 0; j < h; j += TILE_HEIGHT)
         for (uint32_t i = 0; i < w; i += TILE_WIDTH, ray += WIDE_LANES) {
@@ -299,7 +331,7 @@ static void march_patch(const struct brume_frame *f, struct patch *b,
                                          mask_less(row, lanes_of(h - j)));
             if (i % (4 * TILE_WIDTH) == 0)
                 miss = tiles_miss(f, x + i, y + j, w - i, h - j);
-            clear_rays(b, ray);
+            clear_rays(f, b, ray);
             if (!miss)
                 add_rays(f, b, ray, column + (x + i), row + (y + j), wanted);
             while (b->count == LOOKUPS / AHEAD_VIEW)
@@ -323,6 +355,7 @@ void WIDE_NAME(const struct wide_copy *copy, const struct brume_frame *frame,
 {
     struct patch b;
     b.copy = copy;
+    begin_lit(frame, &b);
     for (unsigned j = 0; j < h; j += PATCH_HEIGHT)
         for (unsigned i = 0; i < w; i += PATCH_WIDTH)
             march_patch(frame, &b, x + i, y + j,

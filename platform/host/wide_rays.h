@@ -13,14 +13,14 @@
 /* A ray whose entry into the pool is farther than this misses, Q16.16. */
 #define FAR_ENTRY 0xfde80000u
 
-/* One ray a lane, and what it has gathered. */
+/* One ray a lane. */
 struct rays {
     lanes position[3];
     lanes move[3];
-    lanes left;          /* samples in the pool */
-    lanes t;             /* of the first, Q16.16 */
-    lanes transmittance; /* Q1.31 */
-    lanes moment;        /* see brume_march.c */
+    lanes left;    /* samples in the pool */
+    lanes t;       /* of the first, Q16.16 */
+    lanes unit[3]; /* direction, Q2.30 */
+    lanes x, y;    /* of the grid */
     lanes_mask alive;
 };
 
@@ -130,6 +130,17 @@ LANES_INLINE lanes jitter_lanes(const struct brume_frame *f, lanes x, lanes y,
     return f->jitter >> channel & 1u
                ? noise_lanes(f, x, y, f->noise_frame, channel)
                : lanes_of(0);
+}
+
+/* lookup_noise: of stochastic lookups, along axis i. */
+static inline lanes lookup_noises(const struct brume_frame *f, lanes x, lanes y,
+                                  uint32_t i)
+{
+    lanes value = noise_lanes(f, x, y, f->noise_frame, 4u + i);
+    bool apart = f->noise == BRUME_NOISE_WHITE ||
+                 f->noise == BRUME_NOISE_TABLE ||
+                 f->noise == BRUME_NOISE_TABLE_R2;
+    return apart ? value : value + brume_r3(f->noise_frame, i);
 }
 
 /// Maths ///
@@ -377,20 +388,18 @@ static inline void begin_lanes(struct rays *r, lanes light_first[3],
                                const struct brume_frame *f, lanes x, lanes y,
                                lanes_mask wanted)
 {
-    lanes unit[3], t_in, t_out, place = lanes_of(f->place[0]);
+    lanes t_in, t_out, place = lanes_of(f->place[0]);
     if (f->update == BRUME_CHECKER)
         place ^= y & 1u;
-    x = (x << f->cell_log2[0]) + place;
-    y = (y << f->cell_log2[1]) + f->place[1];
-    r->transmittance = lanes_of(1u << 31);
-    r->moment = lanes_of(0);
-    directions_of(unit, f, x, y);
-    r->alive = mask_and(wanted, clip_lanes(f, unit, &t_in, &t_out));
+    r->x = x = (x << f->cell_log2[0]) + place;
+    r->y = y = (y << f->cell_log2[1]) + f->place[1];
+    directions_of(r->unit, f, x, y);
+    r->alive = mask_and(wanted, clip_lanes(f, r->unit, &t_in, &t_out));
     if (!mask_any(r->alive))
         return;
     lanes jitter = jitter_lanes(f, x, y, 0);
     jitter = (jitter * f->strata >> 16) + f->stratum;
-    enter_lanes(r, f, unit, jitter, t_in, t_out);
+    enter_lanes(r, f, r->unit, jitter, t_in, t_out);
     r->left = counts_inside(r, f);
     if ((f->jitter & BRUME_JITTER_LIGHT) && f->light_kind != BRUME_UNIFORM)
         begin_light_lanes(light_first, f, jitter_lanes(f, x, y, 1));

@@ -183,8 +183,8 @@ static int make(struct options *o, char *err)
     if (o->bits == 4)
         quantise(&t);
     if (o->output)
-        result = table_file_write(&t, o->output, o->bits, o->command, err,
-                                  ERROR_SIZE);
+        result = table_file_write(&t, o->job.space, o->output, o->bits,
+                                  o->command, err, ERROR_SIZE);
     if (!result && t.channels == 1)
         result = judge(&t, o, o->command + sizeof "brume-noise", err);
     else if (!result && o->measure)

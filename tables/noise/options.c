@@ -266,7 +266,7 @@ static int check_make(const struct options *o, const struct texts *texts,
                     o->job.from);
     if (check_values(o, err, err_size))
         return -1;
-    if (o->output && table_file_check(o->output, err, err_size))
+    if (o->output && table_file_check(o->output, o->job.space, err, err_size))
         return -1;
     return check_spectrum(o, err, err_size);
 }

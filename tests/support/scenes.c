@@ -23,7 +23,7 @@ static const struct brume_noise_table k_noise_table = {k_noise, 3, 3, 1, 4};
 #define BLOCK(name, noise) \
     { \
         name, "block_u8", 160, 120, NEAR, BRUME_LOG, 6, J_BOTH, noise, \
-            2 * ONE, 5, VIEW_FRONT, false, false, NULL \
+            2 * ONE, 5, VIEW_FRONT, false, false, NULL, NULL \
     }
 
 /* A sequence on the same volume. Frames are numbered from 15 on: the turns of
@@ -32,9 +32,42 @@ static const struct brume_noise_table k_noise_table = {k_noise, 3, 3, 1, 4};
     { \
         name, "block_u8", 64, 48, NEAR, BRUME_LOG, 4, J_BOTH, \
             BRUME_NOISE_RANK1, 2 * ONE, 15, VIEW_FRONT, false, false, \
-            &(const struct test_sequence) \
+            &(const struct test_sequence){__VA_ARGS__}, NULL \
+    }
+
+/* Lighting on volumes that have mips, a cache and the sky's visibility. */
+#define LIT(name, volume, filter, light, samples, view, ...) \
+    { \
+        name, volume, 96, 72, filter, light, samples, J_BOTH, \
+            BRUME_NOISE_RANK1, ONE + ONE / 4, 9, view, false, false, NULL, \
+            &(const struct test_lighting) \
         { \
             __VA_ARGS__ \
+        } \
+    }
+
+/* The same over time. */
+#define LIT_SEQUENCE(name, frames, temporal, bits, resolution) \
+    { \
+        name, "lit_u8", 64, 48, NEAR, BRUME_CONE, 8, J_BOTH, \
+            BRUME_NOISE_RANK1, 2 * ONE, 15, VIEW_FRONT, false, false, \
+            &(const struct test_sequence){frames, \
+                                          temporal, \
+                                          bits, \
+                                          3, \
+                                          BRUME_FETCH_CATMULL_ROM, \
+                                          BRUME_CLAMP_VARIANCE, \
+                                          BRUME_BINOMIAL3, \
+                                          resolution, \
+                                          0, \
+                                          BRUME_UPSAMPLE_AWARE, \
+                                          true, \
+                                          0, \
+                                          4}, \
+            &(const struct test_lighting) \
+        { \
+            .phase = 2, .octaves = 3, .ambient = BRUME_AMBIENT_GRADIENT, \
+            .colour = true, .sky = true, .filmic = true \
         } \
     }
 
@@ -42,72 +75,72 @@ const struct test_scene test_scenes[] = {
     /* name, volume, size, lookup, light, n, jitter, noise, step, frame, view,
      * clamp, small */
     {"block_u8", "block_u8", 320, 240, NEAR, BRUME_LOG, 6, J_NONE, 0, ONE, 0,
-     VIEW_FRONT, false, false, NULL},
+     VIEW_FRONT, false, false, NULL, NULL},
     {"cloud_u8", "cloud_u8", 640, 480, NEAR, BRUME_LOG, 10, J_NONE, 0, ONE, 0,
-     VIEW_FRONT, false, false, NULL},
+     VIEW_FRONT, false, false, NULL, NULL},
     {"white", "cloud_u8", 320, 240, NEAR, BRUME_LOG, 8, J_BOTH,
-     BRUME_NOISE_WHITE, 2 * ONE, 7, VIEW_FRONT, false, false, NULL},
+     BRUME_NOISE_WHITE, 2 * ONE, 7, VIEW_FRONT, false, false, NULL, NULL},
     {"ign", "cloud_u8", 320, 240, NEAR, BRUME_LOG, 8, J_PRIM, BRUME_NOISE_IGN,
-     3 * ONE, 65, VIEW_FRONT, false, false, NULL},
+     3 * ONE, 65, VIEW_FRONT, false, false, NULL, NULL},
     {"bayer8", "cloud_u8", 320, 240, NEAR, BRUME_LOG, 8, J_LIGHT,
-     BRUME_NOISE_BAYER8, ONE + ONE / 3, 1, VIEW_SUN, false, false, NULL},
+     BRUME_NOISE_BAYER8, ONE + ONE / 3, 1, VIEW_SUN, false, false, NULL, NULL},
     {"trilinear_u8", "cloud_u8", 320, 240, TRI, BRUME_LOG, 8, J_NONE, 0, ONE, 0,
-     VIEW_FRONT, false, false, NULL},
+     VIEW_FRONT, false, false, NULL, NULL},
     {"trilinear_u8_apron", "cloud_u8_apron", 320, 240, TRI, BRUME_LOG, 8,
-     J_NONE, 0, ONE, 0, VIEW_FRONT, false, false, NULL},
+     J_NONE, 0, ONE, 0, VIEW_FRONT, false, false, NULL, NULL},
     {"cloud_u8r", "cloud_u8r", 320, 240, NEAR, BRUME_LOG, 8, J_NONE, 0, ONE, 0,
-     VIEW_FRONT, false, false, NULL},
+     VIEW_FRONT, false, false, NULL, NULL},
     {"uniform_u8r", "cloud_u8r", 200, 150, TRI, BRUME_UNIFORM, 40, J_PRIM,
-     BRUME_NOISE_IGN, ONE, 3, VIEW_FRONT, false, false, NULL},
+     BRUME_NOISE_IGN, ONE, 3, VIEW_FRONT, false, false, NULL, NULL},
     {"cloud_u4r", "cloud_u4r", 320, 240, NEAR, BRUME_LOG, 8, J_NONE, 0, ONE, 0,
-     VIEW_FRONT, false, false, NULL},
+     VIEW_FRONT, false, false, NULL, NULL},
     {"clamp_u4r_apron", "cloud_u4r_apron", 160, 120, TRI, BRUME_LOG, 8, J_NONE,
-     0, ONE, 0, VIEW_FRONT, true, false, NULL},
+     0, ONE, 0, VIEW_FRONT, true, false, NULL, NULL},
     {"clamp_u8", "cloud_u8", 320, 240, NEAR, BRUME_UNIFORM, 40, J_NONE, 0, ONE,
-     0, VIEW_FRONT, true, false, NULL},
+     0, VIEW_FRONT, true, false, NULL, NULL},
     {"inside", "cloud_u8r_apron", 320, 240, TRI, BRUME_LOG, 8, J_BOTH,
-     BRUME_NOISE_WHITE, ONE / 2, 0, VIEW_INSIDE, false, false, NULL},
+     BRUME_NOISE_WHITE, ONE / 2, 0, VIEW_INSIDE, false, false, NULL, NULL},
     {"grazing", "cloud_u8", 320, 240, NEAR, BRUME_LOG, 8, J_NONE, 0, ONE, 0,
-     VIEW_GRAZING, false, false, NULL},
+     VIEW_GRAZING, false, false, NULL, NULL},
     {"far", "cloud_u8", 161, 97, NEAR, BRUME_LOG, 16, J_PRIM, BRUME_NOISE_IGN,
-     16 * ONE, 0, VIEW_FAR, false, false, NULL},
+     16 * ONE, 0, VIEW_FAR, false, false, NULL, NULL},
     {"top", "cloud_u4r", 97, 161, NEAR, BRUME_NO_LIGHT, 0, J_PRIM,
-     BRUME_NOISE_BAYER8, 4 * ONE, 0, VIEW_TOP, false, false, NULL},
+     BRUME_NOISE_BAYER8, 4 * ONE, 0, VIEW_TOP, false, false, NULL, NULL},
     {"hd_nearest", "cloud_u8", 1920, 1080, NEAR, BRUME_LOG, 8, J_PRIM,
-     BRUME_NOISE_IGN, 2 * ONE, 0, VIEW_FRONT, false, false, NULL},
+     BRUME_NOISE_IGN, 2 * ONE, 0, VIEW_FRONT, false, false, NULL, NULL},
     {"hd_trilinear", "cloud_u8r_apron", 1920, 1080, TRI, BRUME_LOG, 6, J_BOTH,
-     BRUME_NOISE_BAYER8, 3 * ONE, 0, VIEW_FRONT, false, false, NULL},
+     BRUME_NOISE_BAYER8, 3 * ONE, 0, VIEW_FRONT, false, false, NULL, NULL},
     {"small_cloud", "cloud_u8", 128, 96, NEAR, BRUME_LOG, 8, J_NONE, 0, ONE, 0,
-     VIEW_FRONT, false, true, NULL},
+     VIEW_FRONT, false, true, NULL, NULL},
     {"small_trilinear", "cloud_u8r", 128, 96, TRI, BRUME_UNIFORM, 40, J_NONE, 0,
-     ONE, 0, VIEW_FRONT, false, true, NULL},
+     ONE, 0, VIEW_FRONT, false, true, NULL, NULL},
     {"small_jitter", "cloud_u8", 128, 96, NEAR, BRUME_LOG, 8, J_BOTH,
-     BRUME_NOISE_IGN, 4 * ONE, 0, VIEW_FRONT, false, true, NULL},
+     BRUME_NOISE_IGN, 4 * ONE, 0, VIEW_FRONT, false, true, NULL, NULL},
     {"small_u4r", "cloud_u4r_apron", 128, 96, TRI, BRUME_LOG, 8, J_NONE, 0, ONE,
-     0, VIEW_SUN, false, true, NULL},
+     0, VIEW_SUN, false, true, NULL, NULL},
     {"disney", "wdas_u8", 960, 540, NEAR, BRUME_LOG, 10, J_NONE, 0, ONE, 0,
-     VIEW_FRONT, false, false, NULL},
+     VIEW_FRONT, false, false, NULL, NULL},
     {"disney_hd", "wdas_u8", 1920, 1080, TRI, BRUME_LOG, 10, J_BOTH,
-     BRUME_NOISE_IGN, 2 * ONE, 0, VIEW_FRONT, false, false, NULL},
+     BRUME_NOISE_IGN, 2 * ONE, 0, VIEW_FRONT, false, false, NULL, NULL},
     {"smoke", "smoke_u8r", 960, 540, NEAR, BRUME_LOG, 10, J_PRIM,
-     BRUME_NOISE_WHITE, ONE, 0, VIEW_FRONT, false, false, NULL},
+     BRUME_NOISE_WHITE, ONE, 0, VIEW_FRONT, false, false, NULL, NULL},
     {"smoke_u4r", "smoke_u4r", 320, 240, NEAR, BRUME_LOG, 10, J_NONE, 0, ONE, 0,
-     VIEW_FRONT, false, false, NULL},
+     VIEW_FRONT, false, false, NULL, NULL},
     /* For targets, where the largest frames are too slow: */
     {"disney_160", "wdas_u8", 160, 120, NEAR, BRUME_LOG, 10, J_NONE, 0, ONE, 0,
-     VIEW_FRONT, false, false, NULL},
+     VIEW_FRONT, false, false, NULL, NULL},
     {"disney_160_unlit", "wdas_u8", 160, 120, NEAR, BRUME_NO_LIGHT, 0, J_NONE,
-     0, ONE, 0, VIEW_FRONT, false, false, NULL},
+     0, ONE, 0, VIEW_FRONT, false, false, NULL, NULL},
     {"disney_320", "wdas_u8", 320, 240, NEAR, BRUME_LOG, 10, J_NONE, 0, ONE, 0,
-     VIEW_FRONT, false, false, NULL},
+     VIEW_FRONT, false, false, NULL, NULL},
     {"disney_u4r", "wdas_u4r", 160, 120, NEAR, BRUME_LOG, 10, J_NONE, 0, ONE, 0,
-     VIEW_FRONT, false, false, NULL},
+     VIEW_FRONT, false, false, NULL, NULL},
     {"disney_u4r_unlit", "wdas_u4r", 160, 120, NEAR, BRUME_NO_LIGHT, 0, J_NONE,
-     0, ONE, 0, VIEW_FRONT, false, false, NULL},
+     0, ONE, 0, VIEW_FRONT, false, false, NULL, NULL},
     {"disney_lod1", "wdas1_u8", 160, 120, NEAR, BRUME_LOG, 10, J_NONE, 0, ONE,
-     0, VIEW_FRONT, false, false, NULL},
+     0, VIEW_FRONT, false, false, NULL, NULL},
     {"disney_lod1_unlit", "wdas1_u8", 160, 120, NEAR, BRUME_NO_LIGHT, 0, J_NONE,
-     0, ONE, 0, VIEW_FRONT, false, false, NULL},
+     0, ONE, 0, VIEW_FRONT, false, false, NULL, NULL},
     BLOCK("block_none", BRUME_NOISE_NONE),
     BLOCK("block_white", BRUME_NOISE_WHITE),
     BLOCK("block_ign", BRUME_NOISE_IGN),
@@ -156,6 +189,43 @@ const struct test_scene test_scenes[] = {
              0, 16 * ONE, 0),
     SEQUENCE("seq_gauss1_edge", 1, 0, 16, 0, 0, 0, BRUME_GAUSS1, 0, 0, 0, 0,
              16 * ONE, 0),
+    LIT("lit_nothing", "lit_u8", NEAR, BRUME_LOG, 8, VIEW_FRONT, .octaves = 0),
+    LIT("lit_phase", "lit_u8", NEAR, BRUME_LOG, 8, VIEW_SUN, .phase = 1,
+        .octaves = 1),
+    LIT("lit_back", "lit_u8", TRI, BRUME_LOG, 8, VIEW_FRONT, .phase = 3,
+        .octaves = 2),
+    LIT("lit_octaves", "lit_u4r_apron", TRI, BRUME_UNIFORM, 40, VIEW_SUN,
+        .phase = 2, .octaves = 4),
+    LIT("lit_constant", "lit_u8", NEAR, BRUME_NO_LIGHT, 0, VIEW_FRONT,
+        .ambient = BRUME_AMBIENT_CONSTANT, .visibility = BRUME_SKY_BAKED,
+        .colour = true),
+    LIT("lit_gradient", "lit_u4r_apron", NEAR, BRUME_LOG, 8, VIEW_FRONT,
+        .octaves = 2, .ambient = BRUME_AMBIENT_GRADIENT, .colour = true),
+    LIT("lit_sampled", "lit_u8", TRI, BRUME_LOG, 8, VIEW_FRONT, .octaves = 1,
+        .ambient = BRUME_AMBIENT_GRADIENT, .visibility = BRUME_SKY_SAMPLED),
+    LIT("lit_cube", "lit_u8", NEAR, BRUME_LOG, 8, VIEW_TOP, .octaves = 1,
+        .ambient = BRUME_AMBIENT_CUBE, .visibility = BRUME_SKY_SAMPLED,
+        .colour = true),
+    LIT("lit_cone", "lit_u8", NEAR, BRUME_CONE, 10, VIEW_FRONT, .octaves = 1),
+    LIT("lit_cone_u4r", "lit_u4r_apron", TRI, BRUME_CONE, 16, VIEW_FRONT,
+        .phase = 1, .octaves = 2),
+    LIT("lit_cache", "lit_u8", NEAR, BRUME_CACHE, 0, VIEW_FRONT, .octaves = 2),
+    LIT("lit_cache_blend", "lit_u4r_apron", TRI, BRUME_CACHE, 0, VIEW_FRONT,
+        .phase = 1, .blend = 100),
+    LIT("lit_stochastic", "lit_u8", BRUME_STOCHASTIC, BRUME_LOG, 8, VIEW_FRONT,
+        .octaves = 1),
+    LIT("lit_stochastic_cache", "lit_u4r_apron", BRUME_STOCHASTIC, BRUME_CACHE,
+        0, VIEW_FRONT, .phase = 2, .octaves = 3,
+        .ambient = BRUME_AMBIENT_CONSTANT, .visibility = BRUME_SKY_SAMPLED,
+        .colour = true),
+    LIT("lit_sky", "lit_u8", TRI, BRUME_CONE, 8, VIEW_SUN, .phase = 2,
+        .octaves = 3, .ambient = BRUME_AMBIENT_GRADIENT,
+        .visibility = BRUME_SKY_BAKED, .colour = true, .sky = true,
+        .filmic = true),
+    LIT_SEQUENCE("seq_lit_ema", 3, BRUME_EMA, 16, 0),
+    LIT_SEQUENCE("seq_lit_window8", 5, BRUME_WINDOW, 8, 0),
+    LIT_SEQUENCE("seq_lit_taa", 3, BRUME_TAA, 16, 0),
+    LIT_SEQUENCE("seq_lit_half", 2, BRUME_TAA, 16, BRUME_HALF),
 };
 
 const int test_scene_count = sizeof test_scenes / sizeof test_scenes[0];
@@ -194,6 +264,20 @@ static void place_camera(struct brume_scene *s, int view,
     }
 }
 
+bool test_scene_supported(const struct test_scene *scene)
+{
+    return scene->lighting == NULL || TEST_LIGHTING;
+}
+
+/* Its number among those that have lighting. */
+static unsigned slot_of(const struct test_scene *scene)
+{
+    unsigned slot = 0;
+    for (const struct test_scene *t = test_scenes; t != scene; t++)
+        slot += t->lighting != NULL;
+    return slot;
+}
+
 void test_scene_fill(struct brume_scene *out, const struct test_scene *scene,
                      const struct brume_volume *volume)
 {
@@ -229,6 +313,8 @@ void test_scene_fill(struct brume_scene *out, const struct test_scene *scene,
     s->noise_table = &k_noise_table;
     s->output = BRUME_SRGB;
     s->skip = true;
+    if (scene->lighting != NULL)
+        test_lighting_fill(s, scene->lighting, slot_of(scene), volume);
 }
 
 unsigned test_scene_frames(const struct test_scene *scene)

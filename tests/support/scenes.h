@@ -10,6 +10,8 @@
 
 #include "brume.h"
 
+#include "lighting.h"
+
 /* What a scene adds to the frames' own rays. Its picture is the last of its
  * frames; the camera moves from frame to frame. */
 struct test_sequence {
@@ -33,6 +35,7 @@ struct test_scene {
     bool clamp;                           /* max_density at half the volume's */
     bool small;                           /* kept as a picture too */
     const struct test_sequence *sequence; /* or NULL: one frame by itself */
+    const struct test_lighting *lighting; /* or NULL */
 };
 
 enum test_view {
@@ -46,6 +49,9 @@ enum test_view {
 
 extern const struct test_scene test_scenes[];
 extern const int test_scene_count;
+
+/* Can this build draw it? Else what is filled in is another scene. */
+bool test_scene_supported(const struct test_scene *scene);
 
 /* The core's scene of a test scene. Every field is set here, none left to the
  * core's defaults. */

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "asset_builder.h"
+#include "asset_light.h"
 
 static int add_volume(struct test_volumes *v, const char *name, uint8_t *asset,
                       size_t size)
@@ -34,6 +34,21 @@ static int add_cloud(struct test_volumes *v, const char *name, int format,
     size_t size;
     spec.apron = apron;
     uint8_t *asset = asset_build(&spec, &size);
+    return add_volume(v, name, asset, size);
+}
+
+/* The same with means, depths towards +y and what is seen of the sky. */
+static int add_lit_cloud(struct test_volumes *v, const char *name, int format,
+                         bool apron, int spacing_log2)
+{
+    static const struct density_cloud cloud = {72, 5};
+    struct asset_light light = {true, spacing_log2, true};
+    struct asset_spec spec =
+        asset_spec_of(9, 9, 9, format, density_in_cloud, &cloud);
+    size_t size;
+    spec.apron = apron;
+    uint8_t *asset = asset_build(&spec, &size);
+    asset = asset_add_light(asset, &size, &light);
     return add_volume(v, name, asset, size);
 }
 
@@ -81,6 +96,8 @@ int test_volumes_make(struct test_volumes *volumes, int argc, char **argv)
     bad |= add_cloud(v, "cloud_u8r_apron", BRUME_U8R, true);
     bad |= add_cloud(v, "cloud_u4r", BRUME_U4R, false);
     bad |= add_cloud(v, "cloud_u4r_apron", BRUME_U4R, true);
+    bad |= add_lit_cloud(v, "lit_u8", BRUME_U8, false, 2);
+    bad |= add_lit_cloud(v, "lit_u4r_apron", BRUME_U4R, true, 1);
     for (int i = 1; i < argc; i++)
         bad |= add_file(v, argv[i]);
     return bad;
@@ -146,14 +163,14 @@ uint8_t *test_scene_render(const struct test_scene *scene,
     uint8_t *pixels = malloc(size);
     if (pixels == NULL)
         abort();
-    *error = BRUME_OK;
+    *error = test_scene_supported(t) ? BRUME_OK : BRUME_ERR_FEATURE;
 #if BRUME_WITH_TEMPORAL
     test_scene_frame(&s, t, volume, 0);
     size_t bytes = brume_state_bytes(&s);
     state = malloc(bytes > sizeof *state ? bytes : sizeof *state);
     if (state == NULL)
         abort();
-    if (bytes > 0)
+    if (bytes > 0 && *error == BRUME_OK)
         *error = brume_state_init(state, bytes);
 #endif
     for (unsigned i = 0; i < test_scene_frames(t) && *error == BRUME_OK; i++) {

@@ -7,6 +7,10 @@ BEGIN {
     outside = 64
     roots = "brume_volume_open brume_scene_default brume_begin_frame " \
         "brume_render_rect"
+    # where they are compiled in
+    more = "brume_show_rect brume_trace_rect brume_resolve_rect " \
+        "brume_phase_build brume_cache_rows brume_shadow_begin " \
+        "brume_shadow_rect brume_shadow_at"
 }
 function fail(text) {
     print "stack: " text
@@ -48,6 +52,9 @@ function depth(name, list, n, i, below, deepest) {
 }
 END {
     n = split(roots, root, " ")
+    for (i = split(more, other, " "); i > 0; i--)
+        if (other[i] in bytes)
+            root[++n] = other[i]
     for (i = 1; i <= n; i++) {
         if (!(root[i] in bytes))
             fail(root[i] " is not there")

@@ -261,7 +261,7 @@ static int run_sequence(const struct test_scene *t,
 {
     uint64_t count[4] = {0, 0, 0, 0}, begin = 0;
     int error = open_volume(t->volume, asset);
-    if (!error && !fits(t))
+    if (!error && (!test_scene_supported(t) || !fits(t)))
         return 0;
     target_stack_paint();
     if (!error)
@@ -296,6 +296,8 @@ static int run_scene(const struct test_scene *t,
     uint64_t count = 0;
     uint32_t hash = 0;
     int error = open_volume(t->volume, asset);
+    if (!error && !test_scene_supported(t))
+        error = BRUME_ERR_FEATURE;
     if (!error) {
         test_scene_fill(&s_scene, t, &s_volume);
         clear_tally();

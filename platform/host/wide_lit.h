@@ -1,0 +1,449 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What lighting adds to the wide march: octaves, the cache, cones, light from
+ * the sky; core/brume_lit.c and its headers in lanes. Nothing here depends on a
+ * kernel: densities come from b->sum_ways. Part of wide_march.c.
+ */
+#ifndef BRUME_HOST_WIDE_LIT_H
+#define BRUME_HOST_WIDE_LIT_H
+
+#include "brume_ambient.h"
+#include "brume_sun.h"
+#include "wide_patch.h"
+
+/* Called by every kernel: one of each is enough. */
+#define LANES_CALL static __attribute__((noinline))
+
+/// Queue ///
+
+LANES_INLINE bool samples_sky(const struct brume_frame *f)
+{
+    return f->lit.ambient != BRUME_AMBIENT_NONE &&
+           f->lit.visibility == BRUME_SKY_SAMPLED;
+}
+
+/* Where sample number n of the rays from number `ray` on looks, as move_lookup
+ * of brume_lit.c. */
+LANES_INLINE void moves_of(lanes moved[3], const struct patch *b, uint32_t ray,
+                           lanes n)
+{
+    for (uint32_t i = 0; i < 3; i++)
+        moved[i] =
+            (lanes_load(b->lit.noise[i] + ray) + n * brume_r3(1, i)) & 0xffffu;
+}
+
+/* Lit samples of density d, number n of their rays, join the queue from number
+ * `at` on. */
+LANES_CALL void push_lit(const struct brume_frame *f, struct patch *b,
+                         uint32_t at, uint32_t ray, lanes d, lanes n,
+                         lanes_mask lit)
+{
+    struct queue *q = &b->queue;
+    lanes_pack(q->d + at, d, lit);
+    if (samples_sky(f)) {
+        lanes nth = lanes_load(b->lit.count + ray);
+        lanes_pack(q->nth + at, nth, lit);
+        lanes_store(b->lit.count + ray, nth + lanes_where(lit, lanes_of(1)));
+    }
+    if (f->lit.stochastic) {
+        lanes moved[3];
+        moves_of(moved, b, ray, n);
+        for (int i = 0; i < 3; i++)
+            lanes_pack(q->moved[i] + at, moved[i], lit);
+    }
+}
+
+/* The last samples of a queue, from number `end` on, are its first. */
+LANES_CALL void keep_lit(struct queue *q, uint32_t end)
+{
+    lanes_store(q->d, lanes_load(q->d + end));
+    lanes_store(q->nth, lanes_load(q->nth + end));
+    for (int i = 0; i < 3; i++)
+        lanes_store(q->moved[i], lanes_load(q->moved[i] + end));
+}
+
+/* Positions half a voxel further, so that the nearest point is below them. */
+LANES_INLINE void queued_positions(lanes p[3], const struct brume_frame *f,
+                                   const struct queue *q, uint32_t at)
+{
+    for (int i = 0; i < 3; i++)
+        p[i] = lanes_load(q->p[i] + at) + brume_half_voxel(f);
+}
+
+/// Octaves ///
+
+LANES_CALL void add_octaves(const struct brume_frame *f, struct patch *b,
+                            uint32_t at, uint32_t n, lanes sum)
+{
+    lanes lost = lanes_load(b->queue.lost + at);
+    for (uint32_t i = 0; i < f->lit.octaves; i++)
+        add_to_rays(
+            b->sun[i], &b->queue, at, n,
+            lanes_mul_hi(lost, sun_transmittances(&f->lit.tau[i], sum)));
+}
+
+/// Dense grids ///
+
+LANES_INLINE lanes points_at(const struct patch *b, const struct dense *g,
+                             lanes x, lanes y, lanes z)
+{
+    lanes q = gather_bytes(g->values, (z * g->size[1] + y) * g->size[0] + x);
+    return g->codes ? lanes_of_table32(b->lit.depth_of_code, q) : q << 16;
+}
+
+LANES_INLINE lanes blended_lanes(lanes a, lanes b, lanes w)
+{
+    return (mix_lanes(a, b, w) + 128u) >> 8;
+}
+
+/* dense_value */
+static lanes dense_lanes(const struct patch *b, const struct dense *g,
+                         const lanes p[3], bool between)
+{
+    lanes low[3], high[3], weight[3], plane[2];
+    for (int i = 0; i < 3; i++) {
+        lanes at = between ? p[i] : p[i] + 0x8000u;
+        lanes most = lanes_of((g->size[i] - 1u) << 16);
+        at = lanes_min(lanes_unless(mask_high(at), at), most);
+        low[i] = at >> 16;
+        high[i] = lanes_min(low[i] + 1u, most >> 16);
+        weight[i] = at >> 8 & 255u;
+    }
+    if (!between)
+        return points_at(b, g, low[0], low[1], low[2]);
+    for (uint32_t n = 0; n < 2; n++) {
+        lanes z = n ? high[2] : low[2];
+        plane[n] = blended_lanes(
+            blended_lanes(points_at(b, g, low[0], low[1], z),
+                          points_at(b, g, high[0], low[1], z), weight[0]),
+            blended_lanes(points_at(b, g, low[0], high[1], z),
+                          points_at(b, g, high[0], high[1], z), weight[0]),
+            weight[1]);
+    }
+    return blended_lanes(plane[0], plane[1], weight[2]);
+}
+
+/// Cache ///
+
+/* sum_cache */
+LANES_INLINE lanes cache_sums(const struct brume_frame *f,
+                              const struct patch *b, uint32_t at)
+{
+    const struct brume_cache *c = &f->lit.cache;
+    struct dense g = {c->from, {c->size[0], c->size[1], c->size[2]}, true};
+    bool between = f->kernel & 4u;
+    lanes p[3], sum;
+    queued_positions(p, f, &b->queue, at);
+    for (int i = 0; i < 3; i++) {
+        p[i] = (p[i] >> c->spacing_log2) - 0x8000u;
+        if (f->lit.stochastic)
+            p[i] += lanes_load(b->queue.moved[i] + at) - 0x8000u;
+    }
+    sum = dense_lanes(b, &g, p, between);
+    if (c->blend == 0)
+        return sum;
+    g.values = c->to;
+    return blended_lanes(sum, dense_lanes(b, &g, p, between),
+                         lanes_of(c->blend >> 8));
+}
+
+/// Cones ///
+
+/* brick_mean */
+LANES_INLINE lanes brick_means(const struct brume_volume *v, const lanes p[3],
+                               uint32_t level, lanes_mask wanted)
+{
+    lanes at = lanes_where(wanted, cell_number(v, p[0], p[1], p[2]));
+    lanes cell = gather_words(v->cells, at);
+    uint32_t shift = 16u + level, row = 3u - level;
+    uint32_t mask = level == 1 ? 3u : 1u, first = level == 1 ? 0 : 64u;
+    lanes i = (p[0] >> shift & mask) | (p[1] >> shift & mask) << row |
+              (p[2] >> shift & mask) << 2u * row;
+    wanted = mask_less_those(wanted, mask_high(cell));
+    at = lanes_where(wanted, cell * 72u + first + i);
+    lanes q = lanes_where(wanted, gather_bytes(v->mips, at));
+    return q * (q + 1u);
+}
+
+/* mean_at, of levels above 0; p half a voxel further */
+LANES_INLINE lanes means_at(const struct brume_volume *v, struct mip *m,
+                            const lanes p[3], uint32_t level, lanes_mask wanted)
+{
+    if (level < 3)
+        return brick_means(v, p, level, wanted);
+    seek_mip(m, level);
+    uint32_t s = 16u + m->level;
+    lanes row = (p[2] >> s) * m->size[1] + (p[1] >> s);
+    lanes at = m->offset + row * m->size[0] + (p[0] >> s);
+    lanes q = gather_bytes(v->mips, lanes_where(wanted, at));
+    q = lanes_where(wanted, q);
+    return q * (q + 1u);
+}
+
+/* log2 of the length of segment i of a cone, in light steps. */
+LANES_INLINE uint32_t segment_log2(const struct brume_frame *f, uint32_t i)
+{
+    return brume_doubling(f, i) - (i >= 4 && i < 8 ? 1u : 0);
+}
+
+/* The way to segment i. */
+LANES_INLINE void segment_ways(lanes way[3], const struct brume_frame *f,
+                               const struct light_lanes *light, uint32_t i)
+{
+    for (int a = 0; a < 3; a++) {
+        way[a] = light->first[a];
+        if (i >= 4 && i < 8) {
+            uint32_t step = (uint32_t)f->light_line.move[a];
+            way[a] += i & 1u ? 2u * step : step;
+            way[a] = (lanes)((lanes_signed)way[a] / 2);
+        }
+        way[a] <<= brume_doubling(f, i);
+    }
+}
+
+/* Segments that are short enough for densities. They fit the word. */
+LANES_INLINE lanes near_segments(const struct brume_frame *f, struct patch *b,
+                                 const struct light_lanes *light, uint32_t at)
+{
+    struct ways *w = &b->lit.ways;
+    for (w->count = 0; w->count < light->samples; w->count++) {
+        lanes way[3];
+        uint32_t length = segment_log2(f, w->count);
+        if (f->lit.cone_level + (int32_t)length > 0)
+            break;
+        segment_ways(way, f, light, w->count);
+        for (int i = 0; i < 3; i++)
+            lanes_store(w->way[w->count][i], way[i]);
+        w->shift[w->count] = length;
+    }
+    lanes sum = lanes_load(b->queue.d + at) + b->sum_ways(f, b, at);
+    return is_narrow_frame(f) ? sum << 8 : sum;
+}
+
+/* sum_cone, of n samples */
+static lanes cone_sums(const struct brume_frame *f, struct patch *b,
+                       uint32_t at, uint32_t n)
+{
+    const struct brume_volume *v = f->volume;
+    struct mip mip = {3,
+                      v->bricks * 72u,
+                      {v->cell_count[0], v->cell_count[1], v->cell_count[2]}};
+    struct light_lanes light;
+    lanes p[3], half = lanes_of(brume_half_voxel(f));
+    begin_light(&light, f, &b->queue, at);
+    lanes fit = lanes_leading_zeros(magnitudes(light.first[0]) |
+                                    magnitudes(light.first[1]) |
+                                    magnitudes(light.first[2]));
+    b->lit.ways.wanted = mask_first(n);
+    lanes sum = near_segments(f, b, &light, at);
+    lanes_mask wanted = b->lit.ways.wanted;
+    for (uint32_t i = b->lit.ways.count; i < light.samples; i++) {
+        lanes way[3];
+        uint32_t length = segment_log2(f, i);
+        segment_ways(way, f, &light, i);
+        for (int a = 0; a < 3; a++)
+            p[a] = lanes_load(b->queue.p[a] + at) + way[a];
+        wanted = mask_and(wanted, inside_lanes(f, p[0], p[1], p[2]));
+        wanted =
+            mask_and(wanted, mask_less(lanes_of(brume_doubling(f, i)), fit));
+        if (!mask_any(wanted))
+            break;
+        for (int a = 0; a < 3; a++)
+            p[a] += half;
+        sum +=
+            means_at(v, &mip, p, (uint32_t)(f->lit.cone_level) + length, wanted)
+            << length;
+    }
+    return sum;
+}
+
+/// Light without light samples ///
+
+/* Lights the queue's samples before number `end`: by cones, the cache, or with
+ * nothing between them and the sun. */
+LANES_CALL void light_by_grids(const struct brume_frame *f, struct patch *b,
+                               uint32_t end)
+{
+    for (uint32_t at = 0; at < end; at += WIDE_LANES) {
+        uint32_t n = end - at < WIDE_LANES ? end - at : WIDE_LANES;
+        lanes sum = f->lit.light == BRUME_CONE    ? cone_sums(f, b, at, n)
+                    : f->lit.light == BRUME_CACHE ? cache_sums(f, b, at)
+                                                  : lanes_of(0);
+        add_octaves(f, b, at, n, sum);
+    }
+}
+
+/// Sky ///
+
+/* baked_sky */
+LANES_INLINE lanes baked_skies(const struct brume_frame *f,
+                               const struct patch *b, uint32_t at)
+{
+    const struct brume_volume *v = f->volume;
+    struct dense g = {
+        v->sky, {v->cell_count[0], v->cell_count[1], v->cell_count[2]}, false};
+    lanes p[3];
+    queued_positions(p, f, &b->queue, at);
+    for (int i = 0; i < 3; i++)
+        p[i] = (p[i] >> 3) - 0x8000u;
+    return lanes_mul_hi(dense_lanes(b, &g, p, true) << 8,
+                        lanes_of(1077952577u));
+}
+
+/* sky_direction */
+LANES_INLINE void sky_directions(lanes out[3], const struct brume_frame *f,
+                                 const struct patch *b, uint32_t at, uint32_t n)
+{
+    const struct brume_direction_table *t = f->lit.lighting->directions;
+    lanes ray = lanes_where(mask_first(n), lanes_load(b->queue.ray + at));
+    lanes nth = lanes_load(b->queue.nth + at);
+    lanes x = gather_words(b->lit.x, ray), y = gather_words(b->lit.y, ray);
+    uint32_t frame = brume_noise_frame(f) & ((1u << t->frames_log2) - 1u);
+    x += (nth * 3242174889u) >> (32u - t->width_log2);
+    y += (nth * 2447445414u) >> (32u - t->height_log2);
+    x &= (1u << t->width_log2) - 1u;
+    y &= (1u << t->height_log2) - 1u;
+    lanes i = (((y | frame << t->height_log2) << t->width_log2) | x) * 3u;
+    for (uint32_t axis = 0; axis < 3; axis++) {
+        lanes a = gather_bytes((const uint8_t *)t->values, i + axis);
+        out[axis] = with_signs((a ^ 0x80u) - 0x80u, 0u - (nth & 1u));
+    }
+}
+
+/* sky_transmittance; the direction is `way` */
+static lanes sky_transmittances(lanes way[3], const struct brume_frame *f,
+                                struct patch *b, uint32_t at, uint32_t n)
+{
+    struct ways *w = &b->lit.ways;
+    lanes local[3];
+    sky_directions(local, f, b, at, n);
+    for (int i = 0; i < 3; i++) {
+        way[i] = lanes_of(0);
+        for (int axis = 0; axis < 3; axis++) {
+            lanes a = lanes_of((uint32_t)f->lit.sky_axis[axis][i]);
+            lanes m = mul_round_lanes(a, magnitudes(local[axis]) << 18, 7);
+            way[i] += with_signs(m, signs_of(local[axis]));
+        }
+    }
+    w->wanted = mask_first(n);
+    w->count = f->lit.sky_samples;
+    for (uint32_t k = 0; k < w->count; k++) {
+        for (int i = 0; i < 3; i++)
+            lanes_store(w->way[k][i], way[i] << k);
+        w->shift[k] = k;
+    }
+    return sun_transmittances(&f->lit.sky_tau, b->sum_ways(f, b, at));
+}
+
+/* height_of */
+LANES_INLINE lanes heights_of(const struct brume_frame *f,
+                              const struct queue *q, uint32_t at)
+{
+    lanes above = lanes_of(0u - (uint32_t)f->lit.low);
+    for (int i = 0; i < 3; i++) {
+        lanes m = lanes_of(magnitude(f->lit.zenith[i]));
+        lanes p = lanes_load(q->p[i] + at);
+        above += with_signs(lanes_mul_hi(m, p) + (m * p >> 31),
+                            lanes_of(sign_mask(f->lit.zenith[i])));
+    }
+    above = lanes_unless(mask_high(above), above);
+    uint32_t up = (uint32_t)(f->lit.per_height.e + 62) & 31u;
+    lanes height = lanes_mul_hi(above << up, lanes_of(f->lit.per_height.m))
+                   << 2;
+    height = lanes_select(mask_less(above, lanes_of(f->lit.height)), height,
+                          lanes_of(0xffffffffu));
+    return lanes_where(mask_less(lanes_of(0), above), height);
+}
+
+/* add_cube */
+static void add_cubes(struct patch *b, uint32_t at, uint32_t n, lanes seen,
+                      lanes way[3])
+{
+    normalise_lanes(way);
+    for (int i = 0; i < 3; i++) {
+        lanes m = magnitudes(way[i]) << 1;
+        lanes square = lanes_mul_hi(m, m);
+        lanes share = lanes_select(mask_less(square, lanes_of(1u << 30)),
+                                   square << 2, lanes_of(0xffffffffu));
+        lanes_mask down = mask_high(way[i]);
+        share = lanes_mul_hi(seen, share);
+        add_to_rays(b->lit.sky[2 * i], &b->queue, at, n,
+                    lanes_unless(down, share));
+        add_to_rays(b->lit.sky[2 * i + 1], &b->queue, at, n,
+                    lanes_where(down, share));
+    }
+}
+
+/* add_sky, for the queue's samples before number `end` */
+LANES_CALL void light_from_sky(const struct brume_frame *f, struct patch *b,
+                               uint32_t end)
+{
+    const struct queue *q = &b->queue;
+    bool baked = f->lit.visibility == BRUME_SKY_BAKED;
+    if (f->lit.ambient == BRUME_AMBIENT_NONE)
+        return;
+    for (uint32_t at = 0; at < end; at += WIDE_LANES) {
+        uint32_t n = end - at < WIDE_LANES ? end - at : WIDE_LANES;
+        lanes way[3], through = lanes_of(1u << 30);
+        if (samples_sky(f))
+            through = sky_transmittances(way, f, b, at, n);
+        else if (baked)
+            through = baked_skies(f, b, at);
+        lanes seen = lanes_mul_hi(lanes_load(q->lost + at), through);
+        if (f->lit.ambient == BRUME_AMBIENT_GRADIENT) {
+            lanes upper = lanes_mul_hi(seen, heights_of(f, q, at));
+            add_to_rays(b->lit.sky[0], q, at, n, upper);
+            add_to_rays(b->lit.sky[1], q, at, n, seen - upper);
+        } else if (f->lit.ambient == BRUME_AMBIENT_CUBE && samples_sky(f)) {
+            add_cubes(b, at, n, seen, way);
+        } else {
+            add_to_rays(b->lit.sky[0], q, at, n, seen);
+        }
+    }
+}
+
+/// Rays ///
+
+/* What is the same for all rays. */
+LANES_INLINE void begin_lit(const struct brume_frame *f, struct patch *b)
+{
+    for (uint32_t q = 0; q < 256 && f->lit.light == BRUME_CACHE; q++)
+        b->lit.depth_of_code[q] = depth_of_code(q);
+}
+
+LANES_CALL void clear_lit(struct patch *b, uint32_t ray)
+{
+    lanes_store(b->lit.count + ray, lanes_of(0));
+    for (int j = 0; j < 6; j++)
+        lanes_store(b->lit.sky[j] + ray, lanes_of(0));
+}
+
+LANES_CALL void add_lit_rays(const struct brume_frame *f, struct patch *b,
+                             uint32_t ray, const struct rays *r)
+{
+    for (uint32_t i = 0; i < 3; i++) {
+        lanes_store(b->lit.unit[i] + ray, r->unit[i]);
+        if (f->lit.stochastic)
+            lanes_store(b->lit.noise[i] + ray, lookup_noises(f, r->x, r->y, i));
+    }
+    lanes_store(b->lit.x + ray, r->x);
+    lanes_store(b->lit.y + ray, r->y);
+}
+
+/* The light and transmittance of a ray; its depth is there. Most of it is done
+ * once a ray, so one by one. */
+LANES_CALL void finish_lit(const struct brume_frame *f, const struct patch *b,
+                           uint32_t ray, struct brume_radiance *out)
+{
+    struct gathered g = {0};
+    int32_t unit[3];
+    for (int i = 0; i < 3; i++)
+        unit[i] = as_signed(b->lit.unit[i][ray]);
+    for (uint32_t i = 0; i < f->lit.octaves; i++)
+        g.sun[i] = b->sun[i][ray];
+    for (int j = 0; j < 6; j++)
+        g.sky[j] = b->lit.sky[j][ray];
+    brume_lit_finish(f, &g, unit, b->transmittance[ray], out);
+}
+
+#endif
