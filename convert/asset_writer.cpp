@@ -2,12 +2,12 @@
 #include "asset_writer.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <tbb/parallel_invoke.h>
 #include <zlib.h>
 
 #include "brume.h"
+#include "bytes.hpp"
 
 namespace bake
 {
@@ -19,53 +19,12 @@ constexpr size_t name_limit = 255;
 constexpr size_t ident_bytes = 16; // magic .. crc, not under the CRC
 constexpr size_t buffer_words = 16384;
 
-// Little-endian stores, on any host.
-void put16(uint8_t *p, uint32_t v)
-{
-    p[0] = uint8_t(v);
-    p[1] = uint8_t(v >> 8);
-}
-
-void put32(uint8_t *p, uint32_t v)
-{
-    put16(p, v);
-    put16(p + 2, v >> 16);
-}
-
-void put64(uint8_t *p, uint64_t v)
-{
-    put32(p, uint32_t(v));
-    put32(p + 4, uint32_t(v >> 32));
-}
-
-void put_double(uint8_t *p, double v)
-{
-    uint64_t bits;
-
-    std::memcpy(&bits, &v, sizeof bits);
-    put64(p, bits);
-}
-
 uint32_t float_bits(float v)
 {
     uint32_t bits;
 
     std::memcpy(&bits, &v, sizeof bits);
     return bits;
-}
-
-// m * 2^e with m in [2^31, 2^32): exact for every float.
-void put_number(uint8_t *p, double v)
-{
-    int e = 0;
-    double m = std::floor(std::ldexp(std::frexp(v, &e), 32) + 0.5);
-
-    if (m >= 4294967296.0) {
-        m /= 2;
-        e++;
-    }
-    put32(p, uint32_t(m));
-    put32(p + 4, uint32_t(v > 0 ? e - 32 : 0));
 }
 
 // The file, with the CRC of what went into it.
@@ -152,6 +111,12 @@ std::vector<section> place(const asset_size &size)
         list.push_back({BRUME_SECTION_RNGE, 0, size.range});
     if (size.name > 0)
         list.push_back({BRUME_SECTION_NAME, 0, size.name});
+    if (size.light.mips > 0)
+        list.push_back({BRUME_SECTION_MIPS, 0, size.light.mips});
+    if (size.light.sun > 0)
+        list.push_back({BRUME_SECTION_SUNC, 0, size.light.sun});
+    if (size.light.sky > 0)
+        list.push_back({BRUME_SECTION_AMBI, 0, size.light.sky});
     uint64_t end = BRUME_HEADER_BYTES + list.size() * BRUME_SECTION_BYTES;
     for (section &s : list) {
         s.offset = align(end);
@@ -160,10 +125,18 @@ std::vector<section> place(const asset_size &size)
     return list;
 }
 
-std::vector<uint8_t> make_header(const volume &vol, const measures &m,
-                                 const layout &l, const brick_pool &p,
+// Files without sections that came later say so, and stay as they were.
+uint32_t minor_version(const asset_contents &c)
+{
+    return c.light.sizes().total() > 0 ? 1 : 0;
+}
+
+std::vector<uint8_t> make_header(const asset_contents &c,
                                  const std::vector<section> &list)
 {
+    const layout &l = c.l;
+    const measures &m = c.m;
+    const brick_pool &p = c.p;
     std::vector<uint8_t> h(BRUME_HEADER_BYTES +
                            list.size() * BRUME_SECTION_BYTES);
     const int32_t cells[3] = {l.cells.x, l.cells.y, l.cells.z};
@@ -173,7 +146,7 @@ std::vector<uint8_t> make_header(const volume &vol, const measures &m,
 
     put32(&h[BRUME_OFF_MAGIC], BRUME_MAGIC);
     put16(&h[BRUME_OFF_MAJOR], BRUME_ASSET_MAJOR);
-    put16(&h[BRUME_OFF_MINOR], BRUME_ASSET_MINOR);
+    put16(&h[BRUME_OFF_MINOR], minor_version(c));
     put32(&h[BRUME_OFF_SIZE], uint32_t(list.back().offset + list.back().bytes));
     h[BRUME_OFF_FORMAT] = uint8_t(p.format.format);
     h[BRUME_OFF_SIDE] = uint8_t(p.format.side);
@@ -190,7 +163,7 @@ std::vector<uint8_t> make_header(const volume &vol, const measures &m,
     put32(&h[BRUME_OFF_VOXELS],
           uint32_t(std::min<uint64_t>(m.voxels, UINT32_MAX)));
     for (int i = 0; i < 12; i++)
-        put_double(&h[BRUME_OFF_WORLD + 8 * i], vol.world[i]);
+        put_double(&h[BRUME_OFF_WORLD + 8 * i], c.vol.world[i]);
     for (size_t i = 0; i < list.size(); i++) {
         uint8_t *e = &h[BRUME_HEADER_BYTES + i * BRUME_SECTION_BYTES];
         put32(e, list[i].id);
@@ -198,6 +171,18 @@ std::vector<uint8_t> make_header(const volume &vol, const measures &m,
         put32(e + 8, uint32_t(list[i].bytes));
     }
     return h;
+}
+
+void put_ranges(sink &s, const std::vector<range> &ranges)
+{
+    s.put_words(ranges.size(), [&](size_t i) {
+        return uint32_t(ranges[i].base) | uint32_t(ranges[i].scale) << 16;
+    });
+}
+
+void put_bytes(sink &s, const std::vector<uint8_t> &bytes)
+{
+    s.put(bytes.data(), bytes.size());
 }
 
 // At most 255 bytes, cut between two UTF-8 characters.
@@ -212,24 +197,25 @@ std::string short_name(const std::string &name)
 
 } // namespace
 
-asset_size size_of_asset(const brick_pool &p, const std::string &name)
+asset_size size_of_asset(const brick_pool &p, const std::string &name,
+                         const light_sizes &light)
 {
-    asset_size size = {4 * p.cells.size(), p.bytes.size(), 4 * p.ranges.size(),
-                       short_name(name).size(), 0};
+    asset_size size = {
+        4 * p.cells.size(),      p.bytes.size(), 4 * p.ranges.size(),
+        short_name(name).size(), light,          0};
     const section last = place(size).back();
 
     size.total = last.offset + last.bytes;
     return size;
 }
 
-asset_size write_asset(output &out, const volume &vol, const measures &m,
-                       const layout &l, const brick_pool &p,
-                       const std::string &name)
+asset_size write_asset(output &out, const asset_contents &c)
 {
-    const std::string label = short_name(name);
-    const asset_size size = size_of_asset(p, name);
+    const brick_pool &p = c.p;
+    const std::string label = short_name(c.name);
+    const asset_size size = size_of_asset(p, c.name, c.light.sizes());
     const std::vector<section> list = place(size);
-    std::vector<uint8_t> header = make_header(vol, m, l, p, list);
+    std::vector<uint8_t> header = make_header(c, list);
     sink s(out);
 
     out.write(header.data(), ident_bytes);
@@ -240,14 +226,17 @@ asset_size write_asset(output &out, const volume &vol, const measures &m,
         if (part.id == BRUME_SECTION_CELL)
             s.put_words(p.cells.size(), [&](size_t i) { return p.cells[i]; });
         else if (part.id == BRUME_SECTION_POOL)
-            s.put(p.bytes.data(), p.bytes.size());
+            put_bytes(s, p.bytes);
         else if (part.id == BRUME_SECTION_RNGE)
-            s.put_words(p.ranges.size(), [&](size_t i) {
-                return uint32_t(p.ranges[i].base) | uint32_t(p.ranges[i].scale)
-                                                        << 16;
-            });
-        else
+            put_ranges(s, p.ranges);
+        else if (part.id == BRUME_SECTION_NAME)
             s.put(label.data(), label.size());
+        else if (part.id == BRUME_SECTION_MIPS)
+            put_bytes(s, c.light.mips);
+        else if (part.id == BRUME_SECTION_SUNC)
+            put_bytes(s, c.light.sun);
+        else
+            put_bytes(s, c.light.sky);
     }
     put32(&header[BRUME_OFF_CRC], s.crc());
     out.write_at(0, header.data(), ident_bytes);

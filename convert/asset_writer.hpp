@@ -6,21 +6,32 @@
 
 #include "atomic_file.hpp"
 #include "bricks.hpp"
+#include "light_sections.hpp"
 
 namespace bake
 {
 
 // Bytes of each section, and of the whole.
 struct asset_size {
-    uint64_t cell, pool, range, name, total;
+    uint64_t cell, pool, range, name;
+    light_sizes light;
+    uint64_t total;
 };
 
-// What a pool and its name will take.
-asset_size size_of_asset(const brick_pool &p, const std::string &name);
+// What a pool, its name and its sections for light will take.
+asset_size size_of_asset(const brick_pool &p, const std::string &name,
+                         const light_sizes &light);
 
-asset_size write_asset(output &out, const volume &vol, const measures &m,
-                       const layout &l, const brick_pool &p,
-                       const std::string &name);
+struct asset_contents {
+    const volume &vol;
+    const measures &m;
+    const layout &l;
+    const brick_pool &p;
+    const light_sections &light;
+    const std::string &name;
+};
+
+asset_size write_asset(output &out, const asset_contents &c);
 
 void write_float_dump(output &out, const volume &vol, const layout &l);
 

@@ -6,6 +6,7 @@
 //     source -> extract -> resample -> layout -> quantise -> asset_writer
 //     (grid)    (volume)   (volume)    (jobs)    (bricks)    (file)
 //
+// with light_sections, on demand, between the last two.
 // Only source.cpp, source_nano.cpp and extract.cpp know OpenVDB.
 #ifndef BRUME_CONVERT_BAKE_HPP
 #define BRUME_CONVERT_BAKE_HPP

@@ -73,6 +73,8 @@ class baker
         else
             quantise_voxels();
         r_.seconds.quantise = watch_.lap();
+        make_light();
+        r_.seconds.light = watch_.lap();
         bar_.clear();
         write();
         std::fputs(summary(r_).c_str(), stdout);
@@ -198,7 +200,7 @@ class baker
     {
         const int last = o_.lod >= 0 ? o_.lod : most_lod;
         budget_search search({o_.budget, o_.formats(), std::max(o_.lod, 0),
-                              last, side(), o_.order, src_.name},
+                              last, side(), o_.order, src_.name, o_.light},
                              std::move(src_.vol), bar_);
         require_density(search.input_measures());
         const candidate best = search.choose();
@@ -221,16 +223,31 @@ class baker
         notice(budget_notice(r_.budget, best));
     }
 
+    void make_light()
+    {
+        const uint64_t bytes =
+            size_of_asset(pool_, src_.name,
+                          sizes_of(o_.light, l_.cells, pool_.bricks))
+                .total;
+
+        if (bytes >= blob_limit)
+            throw failure(text("with its sections for light the asset takes "
+                               "%llu bytes; a file may have 2 GiB (try --lod)",
+                               (unsigned long long)bytes));
+        light_ = make_light_sections(o_.light, src_.vol.world, l_, pool_, bar_);
+    }
+
     void fill_report()
     {
         r_.input = o_.input;
         r_.output = o_.output;
         r_.asked_format = o_.format;
+        r_.light = o_.light;
         r_.src = &src_;
         r_.m = &m_;
         r_.l = &l_;
         r_.pool = &pool_;
-        r_.size = size_of_asset(pool_, src_.name);
+        r_.size = size_of_asset(pool_, src_.name, light_.sizes());
         if (o_.form() != output_form::binary)
             r_.symbol = o_.symbol.empty() ? symbol_for(o_.output) : o_.symbol;
     }
@@ -241,7 +258,7 @@ class baker
                                o_.licence.empty() ? src_.licence : o_.licence,
                                facts(r_)};
         const auto bake_to = [&](output &out) {
-            write_asset(out, src_.vol, m_, l_, pool_, src_.name);
+            write_asset(out, {src_.vol, m_, l_, pool_, light_, src_.name});
         };
 
         if (o_.form() == output_form::binary) {
@@ -288,6 +305,7 @@ class baker
     measures m_;
     layout l_;
     brick_pool pool_;
+    light_sections light_;
     report r_;
 };
 

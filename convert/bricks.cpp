@@ -27,10 +27,6 @@ constexpr size_t batch_bricks = 512;
 // first, and how often to look from then on. A multiple of the batch.
 constexpr size_t check_bricks = 2048;
 
-// The format's blob is a u32 of bytes; half of that leaves readers free to
-// use signed offsets.
-constexpr uint64_t blob_limit = uint64_t(1) << 31;
-
 // The low 12 bits of x, three apart. Cells per axis: < 2^12.
 uint64_t spread(uint32_t x)
 {

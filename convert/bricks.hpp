@@ -15,6 +15,10 @@
 namespace bake
 {
 
+// The format's blob is a u32 of bytes; half of that leaves readers free to
+// use signed offsets.
+constexpr uint64_t blob_limit = uint64_t(1) << 31;
+
 // One brick to make. `block` is block_map::none for a cell that is all zero
 // but for its apron.
 struct job {

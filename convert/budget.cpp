@@ -57,19 +57,23 @@ candidate budget_search::try_format(const layout &l, int lod, int format,
 {
     const level &at = levels_[size_t(lod)];
     const brick_format f = {format, l.side, at.m.max};
-    candidate c = {lod, format, 4 * l.cell_count(), false, false, 0};
+    // What sections for light take however many bricks there are.
+    const uint64_t light = sizes_of(want_.light, l.cells, 0).total();
+    candidate c = {lod, format, 4 * l.cell_count() + light, false, false, 0};
     brick_limits limits;
     brick_pool pool;
 
-    limits.bytes = bytes;
     if (c.bytes > bytes)
         return c;
+    limits.bytes = bytes - light;
     c.complete = make_bricks(at.vol, at.m, l, f, limits, bar_, pool);
     if (!c.complete) {
-        c.bytes = pool_bytes(pool);
+        c.bytes = pool_bytes(pool) + light;
         return c;
     }
-    c.bytes = size_of_asset(pool, want_.name).total;
+    c.bytes = size_of_asset(pool, want_.name,
+                            sizes_of(want_.light, l.cells, pool.bricks))
+                  .total;
     c.fits = c.bytes <= want_.bytes;
     const double squared =
         pool.error.rmse * pool.error.rmse * double(at.m.voxels);

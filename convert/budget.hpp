@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "grid_error.hpp"
+#include "light_sections.hpp"
 
 namespace bake
 {
@@ -20,7 +21,8 @@ struct budget_request {
     int first_lod, last_lod;
     int side;
     brick_order order;
-    std::string name; // of the grid: it takes room too
+    std::string name; // of the grid: it takes room too, as do
+    light_request light;
 };
 
 struct candidate {

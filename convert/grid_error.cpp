@@ -5,7 +5,7 @@
 #include <cmath>
 #include <tbb/parallel_for.h>
 
-#include "brume.h"
+#include "decoder.hpp"
 
 namespace bake
 {
@@ -70,69 +70,23 @@ axis_reads reads_along(int at, int lod)
     return r;
 }
 
-// The asset's density, as docs/SPEC.md defines it. Voxels are read from their
-// own cell; an apron repeats them, but for the rounding of its own range.
-class decoder
-{
-  public:
-    decoder(const layout &l, const brick_pool &p)
-        : l_(l), p_(p), bytes_(p.format.bytes()),
-          unit_(double(p.format.density_max) / BRUME_RANGE_TOP)
-    {
-    }
-
-    // Index coordinates of the asset's level. Outside the pool there is
-    // nothing.
-    double at(int x, int y, int z) const
-    {
-        const ijk c = {floor8(x - l_.origin.x), floor8(y - l_.origin.y),
-                       floor8(z - l_.origin.z)};
-
-        if (c.x < 0 || c.y < 0 || c.z < 0 || c.x >= l_.cells.x ||
-            c.y >= l_.cells.y || c.z >= l_.cells.z)
-            return 0;
-        const uint32_t cell = p_.cells[l_.cell_index(c)];
-        if (cell & BRUME_CELL_EMPTY)
-            return 0;
-        const int side = p_.format.side;
-        const int i = (x & 7) + side * ((y & 7) + side * (z & 7));
-        return decode(cell, size_t(i));
-    }
-
-  private:
-    double decode(uint32_t brick, size_t i) const
-    {
-        const uint8_t *b = &p_.bytes[brick * bytes_];
-
-        if (p_.format.format == BRUME_U8)
-            return 256.0 * b[i] * unit_;
-        const range r = p_.ranges[brick];
-        const int q =
-            p_.format.format == BRUME_U8R ? b[i] : b[i / 2] >> i % 2 * 4 & 15;
-        return (r.base + q * double(r.scale)) * unit_;
-    }
-
-    const layout &l_;
-    const brick_pool &p_;
-    size_t bytes_;
-    double unit_;
-};
-
 // The asset's voxels around one 8^3 block of the input.
 struct patch {
     axis_reads x, y, z;
     double density[patch_side][patch_side][patch_side];
 
     // Returns false when all are 0.
-    bool fetch(const decoder &asset)
+    bool fetch(const decoder &asset, ijk origin)
     {
+        const double unit = asset.unit();
         bool used = false;
 
         for (int k = 0; k < z.count; k++)
             for (int j = 0; j < y.count; j++)
                 for (int i = 0; i < x.count; i++) {
-                    density[k][j][i] =
-                        asset.at(x.first + i, y.first + j, z.first + k);
+                    density[k][j][i] = unit * asset.at(x.first + i - origin.x,
+                                                       y.first + j - origin.y,
+                                                       z.first + k - origin.z);
                     used = used || density[k][j][i] > 0;
                 }
         return used;
@@ -195,7 +149,7 @@ both_sums add_row(const volume &in, const block_map &map, const layout &l,
     for (int x = first; x < first + (l.cells.x << lod); x++) {
         const uint32_t b = map.at({x, c.y, c.z});
         p.x = reads_along(8 * x, lod);
-        if (!p.fetch(asset) && b == block_map::none)
+        if (!p.fetch(asset, l.origin) && b == block_map::none)
             continue;
         add_block(
             p, b == block_map::none ? nullptr : expand(in.blocks[b], scratch),

@@ -27,6 +27,14 @@ const char usage[] =
     "                       error that fit (K, M: 1024, 1024^2); --lod and\n"
     "                       --format limit the choice\n"
     "  --max-density D      limit the density to D\n"
+    "  --mips               add means over 2^3, 4^3, ... voxels, for\n"
+    "                       light = cone\n"
+    "  --sun-cache N        add the optical depth towards the sun at points N\n"
+    "                       (2, 4 or 8) voxels apart, for light = cache\n"
+    "  --sun AZ,EL          of --sun-cache: azimuth and elevation, degrees\n"
+    "  --sky-visibility     add how much of the sky each 8^3 voxels see\n"
+    "  --sky-extinction X   of --sky-visibility: of a density of 1 per voxel;\n"
+    "                       the light_density_scale of the scenes\n"
     "  --apron              store 9^3 voxels per brick, for fast trilinear\n"
     "  --order O            number bricks in morton (default) or linear "
     "order\n"
@@ -49,6 +57,7 @@ namespace
 {
 
 constexpr int most_threads = 1024;
+constexpr double most_degrees = 3600;
 constexpr uint64_t most_budget = (uint64_t(1) << 31) - 1;
 
 [[noreturn]] void bad_usage(const std::string &what)
@@ -68,14 +77,43 @@ int whole_number(const std::string &key, const char *s, int lo, int hi)
     return int(v);
 }
 
-float positive_number(const std::string &key, const char *s)
+// `read` is std::strtof or std::strtod.
+template <class real>
+real positive_number(const std::string &key, const char *s,
+                     real (*read)(const char *, char **))
 {
     char *end;
-    const float v = std::strtof(s, &end);
+    const real v = read(s, &end);
 
     if (end == s || *end != '\0' || !std::isfinite(v) || v <= 0)
         bad_usage(key + " takes a number above 0, not \"" + s + "\"");
     return v;
+}
+
+int spacing(const std::string &key, const char *s)
+{
+    const std::string v = s;
+
+    if (v != "2" && v != "4" && v != "8")
+        bad_usage(key + " takes 2, 4 or 8 voxels, not \"" + v + "\"");
+    return v[0] - '0';
+}
+
+// Degrees, as scenes take them.
+void angles(const std::string &key, const char *s, double out[2])
+{
+    char *end;
+
+    out[0] = std::strtod(s, &end);
+    const bool pair = end != s && *end == ',';
+    const char *second = pair ? end + 1 : s;
+    out[1] = std::strtod(second, &end);
+    if (!pair || end == second || *end != '\0' ||
+        !(std::fabs(out[0]) <= most_degrees) ||
+        !(std::fabs(out[1]) <= most_degrees))
+        bad_usage(text("%s takes azimuth,elevation in degrees, at most %g, "
+                       "not \"%s\"",
+                       key.c_str(), most_degrees, s));
 }
 
 // A number of bytes, or of KiB or MiB.
@@ -108,7 +146,7 @@ bool set_value(options &o, const std::string &key, const char *v)
     else if (key == "--lod")
         o.lod = whole_number(key, v, 0, most_lod);
     else if (key == "--max-density")
-        o.max_density = positive_number(key, v);
+        o.max_density = positive_number(key, v, std::strtof);
     else if (key == "--order" && !std::strcmp(v, "linear"))
         o.order = brick_order::linear;
     else if (key == "--order" && std::strcmp(v, "morton") != 0)
@@ -116,6 +154,13 @@ bool set_value(options &o, const std::string &key, const char *v)
                   "\"");
     else if (key == "--budget")
         o.budget = byte_count(key, v);
+    else if (key == "--sun-cache")
+        o.light.sun_spacing = spacing(key, v);
+    else if (key == "--sun") {
+        angles(key, v, o.light.sun);
+        o.sun = true;
+    } else if (key == "--sky-extinction")
+        o.light.sky_extinction = positive_number(key, v, std::strtod);
     else if (key == "--symbol")
         o.symbol = v;
     else if (key == "--licence")
@@ -135,6 +180,10 @@ bool set_flag(options &o, const std::string &key)
 {
     if (key == "--apron")
         o.apron = true;
+    else if (key == "--mips")
+        o.light.mips = true;
+    else if (key == "--sky-visibility")
+        o.sky = true;
     else if (key == "--level-set-to-fog")
         o.fog = true;
     else if (key == "--help" || key == "-h")
@@ -171,6 +220,18 @@ void check_outputs(const options &o)
     }
 }
 
+void check_light(const options &o)
+{
+    if (o.light.sun_spacing > 0 && !o.sun)
+        bad_usage("--sun-cache needs --sun AZ,EL");
+    if (o.light.sun_spacing == 0 && o.sun)
+        bad_usage("--sun needs --sun-cache 2, 4 or 8");
+    if (o.light.sky_extinction == 0 && o.sky)
+        bad_usage("--sky-visibility needs --sky-extinction X");
+    if (o.light.sky_extinction > 0 && !o.sky)
+        bad_usage("--sky-extinction needs --sky-visibility");
+}
+
 void check_options(const options &o)
 {
     if (o.input.empty())
@@ -185,6 +246,7 @@ void check_options(const options &o)
         bad_usage("--symbol takes a C identifier that starts with a letter "
                   "and is no keyword or register, not \"" +
                   o.symbol + "\"");
+    check_light(o);
     check_outputs(o);
 }
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bricks.hpp"
+#include "light_sections.hpp"
 #include "source_text.hpp"
 
 namespace bake
@@ -23,7 +23,9 @@ struct options {
     uint64_t budget = 0;   // bytes; 0: not given
     float max_density = 0; // 0: no limit
     bool apron = false, fog = false, help = false;
+    bool sun = false, sky = false; // were they given?
     brick_order order = brick_order::morton;
+    light_request light;
 
     // The formats that `--format` leaves to choose from.
     std::vector<int> formats() const;

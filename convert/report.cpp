@@ -129,6 +129,9 @@ std::string asset_json(const report &r)
     o.add("pool_bytes", r.size.pool);
     o.add("range_bytes", r.size.range);
     o.add("name_bytes", r.size.name);
+    o.add("mips_bytes", r.size.light.mips);
+    o.add("sun_cache_bytes", r.size.light.sun);
+    o.add("sky_visibility_bytes", r.size.light.sky);
     return o.close();
 }
 
@@ -150,9 +153,43 @@ std::string seconds_json(const stage_seconds &s)
     o.add("read", s.read);
     o.add("voxels", s.voxels);
     o.add("quantise", s.quantise);
+    o.add("light", s.light);
     o.add("write", s.write);
     o.add("total", s.total());
     return o.close();
+}
+
+// The sections for light, and their bytes.
+std::vector<std::string> light_texts(const report &r)
+{
+    const light_request &want = r.light;
+    const light_sizes &bytes = r.size.light;
+    std::vector<std::string> list;
+
+    if (want.mips)
+        list.push_back(text("mips %llu bytes", (unsigned long long)bytes.mips));
+    if (want.sun_spacing > 0)
+        list.push_back(text("depth towards the sun at %g,%g every %d voxels "
+                            "%llu bytes",
+                            want.sun[0], want.sun[1], want.sun_spacing,
+                            (unsigned long long)bytes.sun));
+    if (want.sky_extinction > 0)
+        list.push_back(text("sky seen at extinction %g %llu bytes",
+                            want.sky_extinction,
+                            (unsigned long long)bytes.sky));
+    return list;
+}
+
+std::string light_line(const report &r)
+{
+    const double light = double(r.size.light.total());
+    std::string s = "light: ";
+
+    for (const std::string &part : light_texts(r))
+        s += part + ", ";
+    return s + text("%.1f %% more, %.2f s\n",
+                    100 * light / (double(r.size.total) - light),
+                    r.seconds.light);
 }
 
 const char *format_of(const candidate &c)
@@ -257,6 +294,8 @@ std::vector<std::string> facts(const report &r)
              p.error.rmse, p.error.worst, 100 * p.error.rmse / r.m->mean,
              100 * p.error.worst / r.m->mean)};
 
+    for (const std::string &part : light_texts(r))
+        list.push_back("light     " + part);
     if (r.budget.bytes > 0)
         list.push_back(text("          of the input: rmse %.3g nearest, %.3g "
                             "trilinear (%.3g %% "
@@ -288,6 +327,8 @@ std::string summary(const report &r)
               r.l->cells.x, r.l->cells.y, r.l->cells.z,
               (unsigned long long)p.occupied, (unsigned long long)p.bricks,
               (unsigned long long)shared(p));
+    if (r.light.any())
+        s += light_line(r);
     s += text("%s: %llu bytes, %.2f s (read %.2f, voxels %.2f, quantise "
               "%.2f, write %.2f)\n",
               r.output.c_str(), (unsigned long long)r.size.total,

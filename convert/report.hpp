@@ -15,11 +15,11 @@ namespace bake
 {
 
 struct stage_seconds {
-    double read = 0, voxels = 0, quantise = 0, write = 0;
+    double read = 0, voxels = 0, quantise = 0, light = 0, write = 0;
 
     double total() const
     {
-        return read + voxels + quantise + write;
+        return read + voxels + quantise + light + write;
     }
 };
 
@@ -40,6 +40,7 @@ struct report {
     const layout *l = nullptr;
     const brick_pool *pool = nullptr;
     asset_size size = {};
+    light_request light;
     int lod = 0;
     bool resampled = false;
     stage_seconds seconds;
@@ -53,7 +54,7 @@ std::string budget_notice(const budget_report &b, const candidate &chosen);
 // For the comment of C or assembly, a line each.
 std::vector<std::string> facts(const report &r);
 
-// Three to six lines.
+// Three to seven lines.
 std::string summary(const report &r);
 
 } // namespace bake

@@ -8,8 +8,8 @@ set -eu
 . tests/volumes.sh
 out=$BUILD/builds
 mkdir -p "$out"
-files="core/*.c tests/support/asset_builder.c tests/support/scenes.c
-    tests/support/volumes.c tests/hash_scenes.c"
+files="core/*.c tests/support/asset_builder.c tests/support/asset_light.c
+    tests/support/scenes.c tests/support/volumes.c tests/hash_scenes.c"
 
 # build NAME COMPILER FLAGS...: the hashes go to $out/NAME.txt.
 build()
@@ -98,11 +98,13 @@ hostile_assets()
 {
     # shellcheck disable=SC2086
     gcc -std=c11 -D_POSIX_C_SOURCE=200809L -O1 $sanitize -Icore -Itests \
-        tests/test_asset.c tests/support/asset_builder.c core/*.c \
+        "tests/$1.c" tests/support/asset_builder.c \
+        tests/support/asset_light.c core/*.c \
         -o "$out/hostile" && "./$out/hostile" >"$out/hostile.log" 2>&1 ||
         { tail -n 20 "$out/hostile.log"; return 1; }
 }
-check "hostile assets under ASan and UBSan" hostile_assets
+check "hostile assets under ASan and UBSan" hostile_assets test_asset
+check "hostile sections for light, too" hostile_assets test_asset_light
 
 # mono.h has no colour: grey pixels, against those of the full configuration.
 build config_mono gcc -Os -DBRUME_CONFIG='"targets/configs/mono.h"' ||

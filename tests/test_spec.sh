@@ -33,6 +33,8 @@ done
 conforms "cumulus at half resolution" "$out/cumulus.vdb" --lod 1
 # Bricks at both ends of a row: their numbers must not get mixed up.
 conforms "cumulus in linear order" "$out/cumulus.vdb" --order linear
+conforms "cumulus with all for light" "$out/cumulus.vdb" --mips --sun-cache 4 \
+    --sun 30,20 --sky-visibility --sky-extinction 0.1
 for file in wdas_cloud_sixteenth.vdb openvdb_smoke1.vdb \
     robustness/scivis_grid0.vdb robustness/serg_dragon_with_xform.vdb; do
     if [ -f "$DATA/$file" ]; then

@@ -8,35 +8,13 @@
 #include <map>
 #include <utility>
 
+#include "findings.hpp"
+
 namespace reference {
 
 namespace {
 
 const double infinity = std::numeric_limits<double>::infinity();
-
-class findings {
-public:
-    void add(const std::string &kind, const std::string &what)
-    {
-        if (++count_[kind] <= listed)
-            lines_.push_back(kind + ": " + what);
-    }
-
-    std::vector<std::string> lines() const
-    {
-        std::vector<std::string> all = lines_;
-        for (const auto &[kind, count] : count_)
-            if (count > listed)
-                all.push_back(kind + ": " + std::to_string(count - listed) +
-                              " more");
-        return all;
-    }
-
-private:
-    static constexpr int listed = 8;
-    std::vector<std::string> lines_;
-    std::map<std::string, int> count_;
-};
 
 /// Layout ///
 
@@ -439,6 +417,7 @@ std::vector<std::string> check_asset(const asset &a)
     check_shared(a, found);
     check_aprons(a, found);
     check_voxels(a, found);
+    check_light(a, found);
     return found.lines();
 }
 

@@ -15,7 +15,7 @@ namespace reference {
 static const size_t header_bytes = 176;
 static const size_t entry_bytes = 16;
 
-static void must(bool holds, const std::string &what)
+void must(bool holds, const std::string &what)
 {
     if (!holds)
         throw std::runtime_error(what);
@@ -58,7 +58,7 @@ double asset::number(size_t at) const
 {
     const uint32_t m = u32(at);
     const int e = static_cast<int32_t>(u32(at + 4));
-    must(m == 0 || (m >= 0x80000000U && e >= -1024 && e <= 1023),
+    must(m == 0 || (m >= 0x80000000U && e >= -1024 && e <= 991),
          "number at byte " + std::to_string(at) + " is not normal");
     return m == 0 ? 0 : std::ldexp(static_cast<double>(m), e);
 }
@@ -83,6 +83,9 @@ asset::asset(std::vector<uint8_t> bytes) : bytes_(std::move(bytes))
     check_cells();
     check_pool();
     check_ranges();
+    read_mips();
+    read_sun();
+    read_sky();
 }
 
 void asset::read_ident()
@@ -162,24 +165,17 @@ const section &asset::require(const std::string &id) const
 
 size_t asset::cell_count() const
 {
-    return static_cast<size_t>(cells.x) * static_cast<size_t>(cells.y) *
-           static_cast<size_t>(cells.z);
+    return volume_of(cells);
 }
 
 bool asset::inside(const ijk &c) const
 {
-    return c.x >= 0 && c.y >= 0 && c.z >= 0 && c.x < cells.x &&
-           c.y < cells.y && c.z < cells.z;
+    return inside_of(c, cells);
 }
 
 uint32_t asset::cell_word(const ijk &c) const
 {
-    const size_t nx = static_cast<size_t>(cells.x);
-    const size_t ny = static_cast<size_t>(cells.y);
-    const size_t index =
-        static_cast<size_t>(c.x) +
-        nx * (static_cast<size_t>(c.y) + ny * static_cast<size_t>(c.z));
-    return u32(cell_at_ + 4 * index);
+    return u32(cell_at_ + 4 * index_of(c, cells));
 }
 
 bool asset::occupied(const ijk &cell) const

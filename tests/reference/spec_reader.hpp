@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,30 @@ inline ijk ijk_of(size_t index, const ijk &size)
             static_cast<int>(index / nx / ny)};
 }
 
+// The number of an element.
+inline size_t index_of(const ijk &at, const ijk &size)
+{
+    const size_t nx = static_cast<size_t>(size.x);
+    const size_t ny = static_cast<size_t>(size.y);
+    return static_cast<size_t>(at.x) +
+           nx * (static_cast<size_t>(at.y) + ny * static_cast<size_t>(at.z));
+}
+
+inline size_t volume_of(const ijk &size)
+{
+    return static_cast<size_t>(size.x) * static_cast<size_t>(size.y) *
+           static_cast<size_t>(size.z);
+}
+
+inline bool inside_of(const ijk &at, const ijk &size)
+{
+    return at.x >= 0 && at.y >= 0 && at.z >= 0 && at.x < size.x &&
+           at.y < size.y && at.z < size.z;
+}
+
+// Throws std::runtime_error(what) when that does not hold.
+void must(bool holds, const std::string &what);
+
 // The CRC of PNG and zlib.
 uint32_t crc32(const uint8_t *data, size_t count);
 
@@ -57,6 +82,21 @@ struct density_units {
     int step;             // what one code more adds
     bool lowest, highest; // the first or the last code of its brick's range
     bool stored;          // in a brick, not implied by an empty cell
+};
+
+// The head of SUNC. `at`: byte of the first code.
+struct sun_points {
+    int spacing; // voxels
+    ijk size;    // points per axis
+    std::array<double, 3> direction;
+    double unit;
+    size_t at;
+};
+
+// The head of AMBI. `at`: byte of the first cell.
+struct sky_cells {
+    double extinction;
+    size_t at;
 };
 
 class asset {
@@ -89,6 +129,23 @@ public:
     density_units units_at(const ijk &voxel) const;
     double density(const ijk &voxel) const;
 
+    // Section MIPS: levels 1 .. mip_levels(), or 0.
+    int mip_levels() const { return mip_levels_; }
+    // Cubes of a level that reach into the pool, per axis.
+    ijk mip_size(int level) const;
+    // Of cube number (x,y,z); 0 outside the pool.
+    int mip_code(int level, const ijk &cube) const;
+    double mip_density(int level, const ijk &cube) const;
+
+    // Section SUNC, if there is one, and what its codes mean.
+    std::optional<sun_points> sun;
+    int sun_code(const ijk &point) const; // of one of the grid's
+    double sun_depth(double code) const;
+
+    // Section AMBI, if there is one: 0 .. 1 of a cell of the grid.
+    std::optional<sky_cells> sky;
+    double sky_visibility(const ijk &cell) const;
+
     // Raw bytes, for checks below the level of a voxel.
     const uint8_t *blob() const { return bytes_.data(); }
     size_t blob_size() const { return bytes_.size(); }
@@ -109,6 +166,9 @@ private:
     void check_neighbours(const ijk &cell) const;
     void check_pool() const;
     void check_ranges() const;
+    void read_mips();
+    void read_sun();
+    void read_sky();
     const section &require(const std::string &id) const;
     uint32_t cell_word(const ijk &cell) const;
     uint32_t u16(size_t at) const;
@@ -118,7 +178,8 @@ private:
     ijk u16x3(size_t at) const;
 
     std::vector<uint8_t> bytes_; // cut to the blob's size
-    size_t cell_at_ = 0, pool_at_ = 0, range_at_ = 0;
+    size_t cell_at_ = 0, pool_at_ = 0, range_at_ = 0, mips_at_ = 0;
+    int mip_levels_ = 0;
 };
 
 // Reads a file; errors name it.
