@@ -21,9 +21,9 @@
  *   Q32.32 uint64_t  densities and extinction per unit density per voxel
  *
  * Memory   The caller owns all of it. The library has no heap, no writable
- *          statics, no recursion, and needs at most 1.1 KiB of stack on
- *          32-bit processors, 1.7 KiB on others, 160 bytes less without
- *          sequences (optimised builds; the bound of each target is in
+ *          statics, no recursion, and needs at most 2 KiB of stack on
+ *          32-bit processors, 3.1 KiB on others; without lighting and
+ *          sequences 0.8 (optimised builds; the bound of each target is in
  *          docs/TARGETS.md).
  *          Structs may be copied; they point only at the asset (brume_volume),
  *          at the volume, at a noise table's values, at the lighting and what
@@ -112,36 +112,37 @@ extern "C" {
 #define BRUME_WITH_RESOLUTION BRUME_WITH_SEQUENCES
 #endif
 /* All of "Lighting" below, or which of it: struct brume_lighting with phase
- * functions and octaves of multiple scattering. */
+ * functions and octaves of multiple scattering takes 5.7 KiB with one format
+ * and lookup, all of it with everything 31. */
 #ifndef BRUME_WITH_LIGHTING
 #define BRUME_WITH_LIGHTING 1
 #endif
-#ifndef BRUME_WITH_AMBIENT /* light from the sky */
+#ifndef BRUME_WITH_AMBIENT /* light from the sky; 3.6 KiB */
 #define BRUME_WITH_AMBIENT BRUME_WITH_LIGHTING
 #endif
-#ifndef BRUME_WITH_COLOUR /* coloured light; needs BRUME_WITH_RGB */
+#ifndef BRUME_WITH_COLOUR /* coloured light; needs BRUME_WITH_RGB; 5.1 KiB */
 #define BRUME_WITH_COLOUR (BRUME_WITH_LIGHTING && BRUME_WITH_RGB)
 #endif
-#ifndef BRUME_WITH_CONE /* light = cone: mips */
+#ifndef BRUME_WITH_CONE /* light = cone: mips; 2.0 KiB */
 #define BRUME_WITH_CONE BRUME_WITH_LIGHTING
 #endif
-#ifndef BRUME_WITH_CACHE /* light = cache */
+#ifndef BRUME_WITH_CACHE /* light = cache; 1.9 KiB */
 #define BRUME_WITH_CACHE BRUME_WITH_LIGHTING
 #endif
-#ifndef BRUME_WITH_STOCHASTIC /* filter = stochastic */
+#ifndef BRUME_WITH_STOCHASTIC /* filter = stochastic; 1.9 KiB */
 #define BRUME_WITH_STOCHASTIC \
     (BRUME_WITH_LIGHTING && BRUME_WITH_NEAREST && BRUME_WITH_NOISE)
 #endif
-#ifndef BRUME_WITH_SKY /* gradient, sun disc and haze behind the volume */
+#ifndef BRUME_WITH_SKY /* sky, sun disc, haze; 0.8 KiB */
 #define BRUME_WITH_SKY BRUME_WITH_LIGHTING
 #endif
 #ifndef BRUME_WITH_SHADOW /* the shadow on other things; 2.5 KiB */
 #define BRUME_WITH_SHADOW BRUME_WITH_LIGHTING
 #endif
-#ifndef BRUME_WITH_TONE /* output = filmic */
+#ifndef BRUME_WITH_TONE /* output = filmic; 1.1 KiB */
 #define BRUME_WITH_TONE BRUME_WITH_LIGHTING
 #endif
-#ifndef BRUME_WITH_DITHER /* pixels of few bits, dithered; needs noise */
+#ifndef BRUME_WITH_DITHER /* pixels of few bits; needs noise; 0.5 KiB */
 #define BRUME_WITH_DITHER (BRUME_WITH_LIGHTING && BRUME_WITH_NOISE)
 #endif
 

@@ -480,16 +480,23 @@ static void put_ray(const struct brume_frame *f, struct brume_state *s,
     put_in(f, s, x, y, age, in, 0);
 }
 
-#if BRUME_WITH_COLOUR
+/* Not inlined: one for each layer. */
 static void put_colours(const struct brume_frame *f, struct brume_state *s,
                         uint32_t x, uint32_t y, uint32_t age,
                         const struct brume_sample *in)
 {
     put_in(f, s, x, y, age, in, 1);
 }
-#else
-#define put_colours put_ray /* there is no layer 1 */
-#endif
+
+BRUME_INLINE void put_layer(const struct brume_frame *f, struct brume_state *s,
+                            uint32_t x, uint32_t y, uint32_t age,
+                            const struct brume_sample *in, uint32_t layer)
+{
+    if (BRUME_WITH_COLOUR && layer == 1)
+        put_colours(f, s, x, y, age, in);
+    else
+        put_ray(f, s, x, y, age, in);
+}
 
 /* All rays of the grid in cell (x, y) of the lattice. */
 BRUME_INLINE void put_cell(const struct brume_frame *f, struct brume_state *s,
@@ -501,8 +508,8 @@ BRUME_INLINE void put_cell(const struct brume_frame *f, struct brume_state *s,
     y <<= f->cell_log2[1];
     for (uint32_t j = 0; j < down && y + j < f->grid[1]; j++)
         for (uint32_t i = 0; i < across && x + i < f->grid[0]; i++)
-            (layer == 1 ? put_colours : put_ray)(
-                f, s, x + i, y + j, brume_age_of(f, x + i, y + j), in);
+            put_layer(f, s, x + i, y + j, brume_age_of(f, x + i, y + j), in,
+                      layer);
 }
 
 BRUME_INLINE void store(const struct brume_frame *f, struct brume_state *s,
@@ -514,7 +521,7 @@ BRUME_INLINE void store(const struct brume_frame *f, struct brume_state *s,
     for (uint32_t i = 0; i < n; i++) {
         struct brume_sample sample = brume_sample_from(&in[i], log2, layer);
         if (kept && f->update == BRUME_UPDATE_ALL)
-            (layer == 1 ? put_colours : put_ray)(f, s, x + i, y, 0, &sample);
+            put_layer(f, s, x + i, y, 0, &sample, layer);
         else if (kept)
             put_cell(f, s, x + i, y, &sample, layer);
         else

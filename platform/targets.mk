@@ -16,7 +16,7 @@ demo: $(T)/demo.elf ## (with CONF=name, ASSET=file.brume) run a board's demo
 TARGET_SIZE ?= size
 TARGET_STATE_BYTES ?= 98304
 TARGET_OBJ = $(patsubst %.c,$(T)/%.o,$(wildcard core/*.c) $(TARGET_SRC) \
-	tests/targets/targets.c tests/support/scenes.c) \
+	tests/targets/targets.c tests/support/scenes.c tests/support/lighting.c) \
 	$(patsubst %.S,$(T)/%.o,$(TARGET_ASSETS_SRC))
 TARGET_CPPFLAGS = $(CPPFLAGS) -Iplatform -Itests $(TARGET_DEFINES) \
 	$(if $(TARGET_CONFIG),-DBRUME_CONFIG='"targets/$(TARGET_CONFIG).h"') \

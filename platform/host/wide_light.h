@@ -6,7 +6,7 @@
 #ifndef BRUME_HOST_WIDE_LIGHT_H
 #define BRUME_HOST_WIDE_LIGHT_H
 
-#include "wide_lit.h"
+#include "wide_sky.h"
 
 /// Light ///
 
@@ -31,7 +31,7 @@ LANES_INLINE lanes sum_log_lanes(const struct brume_frame *f,
             wanted = mask_and(wanted, mask_less(lanes_of(n), light->own));
         if (!mask_any(wanted))
             break;
-        want_moved(l, n, s, at, light->moved, wanted, k);
+        want(l, n, s, at, wanted, k);
     }
     look_up(l, n, s, k);
     for (uint32_t i = 0; i < n; i++)
@@ -45,15 +45,17 @@ LANES_INLINE lanes sum_of_ways(const struct brume_frame *f,
                                uint32_t at, struct kernel k)
 {
     struct ways *w = &b->lit.ways;
-    lanes sum = lanes_of(0), moved[3] = {{0}}, p[3];
+    lanes sum = lanes_of(0), moved[3], p[3];
     lanes_mask wanted = w->wanted;
     uint32_t n;
-    for (int i = 0; i < 3 && s->stochastic; i++)
-        moved[i] = lanes_load(b->queue.moved[i] + at);
+    for (int i = 0; i < 3; i++)
+        moved[i] =
+            s->stochastic ? lanes_load(b->lit.moved[i] + at) : lanes_of(0);
     for (n = 0; n < w->count; n++) {
         for (int i = 0; i < 3; i++)
             p[i] = lanes_load(b->queue.p[i] + at) + lanes_load(w->way[n][i]);
         wanted = mask_and(wanted, inside_lanes(f, p[0], p[1], p[2]));
+        wanted = mask_and(wanted, mask_less(lanes_of(n), w->own));
         if (!mask_any(wanted))
             break;
         want_moved(&b->lookups, n, s, p, moved, wanted, k);
@@ -70,10 +72,6 @@ LANES_INLINE lanes sum_of_ways(const struct brume_frame *f,
 LANES_INLINE void add_light(const struct brume_frame *f, struct patch *b,
                             uint32_t at, uint32_t n, lanes sum)
 {
-    if (f->lit.on) {
-        add_octaves(f, b, at, n, sum);
-        return;
-    }
     lanes lost = lanes_load(b->queue.lost + at);
     add_to_rays(b->sun[0], &b->queue, at, n,
                 lanes_mul_hi(lost, sun_transmittances(&f->tau, sum)));
@@ -134,17 +132,16 @@ LANES_INLINE void fill_light_wave(const struct brume_frame *f,
 /* Wants the next samples of group g, and leaves it at the last of them. */
 LANES_INLINE void want_light_group(const struct brume_frame *f,
                                    const struct source *s, struct light_wave *w,
-                                   struct patch *b, uint32_t g, struct kernel k)
+                                   struct lookups *l, uint32_t g,
+                                   struct kernel k)
 {
-    lanes left = lanes_load(w->left[g]), p[3], moved[3] = {{0}};
+    lanes left = lanes_load(w->left[g]), p[3];
     for (int i = 0; i < 3; i++)
         p[i] = lanes_load(w->p[i][g]);
-    for (int i = 0; i < 3 && s->stochastic; i++)
-        moved[i] = lanes_load(b->queue.moved[i] + w->first[g]);
     for (uint32_t n = 0;; n++) {
         lanes_mask on = mask_and(mask_less(lanes_of(n), left),
                                  inside_lanes(f, p[0], p[1], p[2]));
-        want_moved(&b->lookups, g * AHEAD + n, s, p, moved, on, k);
+        want(l, g * AHEAD + n, s, p, on, k);
         if (n == AHEAD - 1) {
             for (int i = 0; i < 3; i++)
                 lanes_store(w->p[i][g], p[i]);
@@ -160,7 +157,7 @@ LANES_INLINE void want_light_group(const struct brume_frame *f,
  * it has ended: then its sums are in place. */
 LANES_INLINE bool step_light_group(const struct source *s, struct light_wave *w,
                                    struct lookups *l, uint32_t g, uint32_t to,
-                                   uint32_t *sums)
+                                   uint32_t *sums, struct kernel k)
 {
     lanes left = lanes_load(w->left[g]), m = lanes_of(1), p[3];
     lanes sum = lanes_load(w->sum[g]);
@@ -173,11 +170,11 @@ LANES_INLINE bool step_light_group(const struct source *s, struct light_wave *w,
     }
     for (int i = 0; i < 3; i++)
         p[i] = lanes_load(w->p[i][g]);
-    lanes cell = cells_to_leap(l, g * AHEAD + AHEAD - 1, s, p, on);
+    lanes cell = cells_to_leap(l, g * AHEAD + AHEAD - 1, s, p, on, k);
     lanes_mask empty = mask_and(on, mask_high(cell));
     if (mask_any(empty))
-        m = lanes_select(empty,
-                         leap_lanes(s->frame, p, w->move, w->inverse, cell), m);
+        m = lanes_select(empty, leap_lanes(s, p, w->move, w->inverse, cell, k),
+                         m);
     w->first[to] = w->first[g];
     for (int i = 0; i < 3; i++)
         lanes_store(w->p[i][to], p[i] + m * w->move[i]);
@@ -199,16 +196,20 @@ LANES_INLINE void light_uniform(const struct brume_frame *f,
         if (w.count == 0)
             break;
         for (uint32_t g = 0; g < w.count; g++)
-            want_light_group(f, s, &w, b, g, k);
+            want_light_group(f, s, &w, &b->lookups, g, k);
         look_up(&b->lookups, w.count * AHEAD, s, k);
         uint32_t to = 0;
         for (uint32_t g = 0; g < w.count; g++)
-            to += step_light_group(s, &w, &b->lookups, g, to, sums);
+            to += step_light_group(s, &w, &b->lookups, g, to, sums, k);
         w.count = to;
     }
-    for (uint32_t at = 0; at < end; at += WIDE_LANES)
-        add_light(f, b, at, end - at < WIDE_LANES ? end - at : WIDE_LANES,
-                  lanes_load(sums + at));
+    for (uint32_t at = 0; at < end; at += WIDE_LANES) {
+        uint32_t n = end - at < WIDE_LANES ? end - at : WIDE_LANES;
+        if (f->lit.on)
+            add_octaves(f, b, at, n, lanes_load(sums + at));
+        else
+            add_light(f, b, at, n, lanes_load(sums + at));
+    }
 }
 
 /* Lights what waits, but for less than a vector; or all. */
@@ -219,9 +220,9 @@ LANES_INLINE void light_queue(const struct brume_frame *f,
     struct queue *q = &b->queue;
     uint32_t end = all ? q->count : q->count / WIDE_LANES * WIDE_LANES;
     uint32_t rest = q->count - end;
-    struct source s = source_of(f, c, k);
-    if (f->lit.on && f->lit.light >= BRUME_NO_LIGHT)
-        light_by_grids(f, b, end);
+    struct source s = source_of(f, c, false, k);
+    if (is_queue_lit(f))
+        light_lit(f, b, end);
     else if (k.uniform)
         light_uniform(f, &s, b, end, k);
     else
@@ -238,7 +239,7 @@ LANES_INLINE void light_queue(const struct brume_frame *f,
         for (int i = 0; i < 3; i++)
             lanes_store(q->light_first[i], lanes_load(q->light_first[i] + end));
         if (f->lit.on)
-            keep_lit(q, end);
+            keep_lit(b, end);
     }
     q->count = rest;
 }

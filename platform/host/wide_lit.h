@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What lighting adds to the wide march: octaves, the cache, cones, light from
- * the sky; core/brume_lit.c and its headers in lanes. Nothing here depends on a
- * kernel: densities come from b->sum_ways. Part of wide_march.c.
+ * What lighting adds to the wide march: octaves, the cache, cones;
+ * core/brume_lit.c and brume_sun.h in lanes; the sky is in wide_sky.h. Nothing
+ * here depends on a kernel: densities come from b->sum_ways. Part of
+ * wide_march.c.
  */
 #ifndef BRUME_HOST_WIDE_LIT_H
 #define BRUME_HOST_WIDE_LIT_H
@@ -38,28 +39,27 @@ LANES_CALL void push_lit(const struct brume_frame *f, struct patch *b,
                          uint32_t at, uint32_t ray, lanes d, lanes n,
                          lanes_mask lit)
 {
-    struct queue *q = &b->queue;
-    lanes_pack(q->d + at, d, lit);
+    lanes_pack(b->lit.d + at, d, lit);
     if (samples_sky(f)) {
         lanes nth = lanes_load(b->lit.count + ray);
-        lanes_pack(q->nth + at, nth, lit);
+        lanes_pack(b->lit.nth + at, nth, lit);
         lanes_store(b->lit.count + ray, nth + lanes_where(lit, lanes_of(1)));
     }
     if (f->lit.stochastic) {
         lanes moved[3];
         moves_of(moved, b, ray, n);
         for (int i = 0; i < 3; i++)
-            lanes_pack(q->moved[i] + at, moved[i], lit);
+            lanes_pack(b->lit.moved[i] + at, moved[i], lit);
     }
 }
 
 /* The last samples of a queue, from number `end` on, are its first. */
-LANES_CALL void keep_lit(struct queue *q, uint32_t end)
+LANES_CALL void keep_lit(struct patch *b, uint32_t end)
 {
-    lanes_store(q->d, lanes_load(q->d + end));
-    lanes_store(q->nth, lanes_load(q->nth + end));
+    lanes_store(b->lit.d, lanes_load(b->lit.d + end));
+    lanes_store(b->lit.nth, lanes_load(b->lit.nth + end));
     for (int i = 0; i < 3; i++)
-        lanes_store(q->moved[i], lanes_load(q->moved[i] + end));
+        lanes_store(b->lit.moved[i], lanes_load(b->lit.moved[i] + end));
 }
 
 /* Positions half a voxel further, so that the nearest point is below them. */
@@ -68,6 +68,24 @@ LANES_INLINE void queued_positions(lanes p[3], const struct brume_frame *f,
 {
     for (int i = 0; i < 3; i++)
         p[i] = lanes_load(q->p[i] + at) + brume_half_voxel(f);
+}
+
+/// Ways ///
+
+/* Of n samples, all the same number. */
+LANES_INLINE void begin_ways(struct ways *w, uint32_t n, uint32_t count)
+{
+    w->wanted = mask_first(n);
+    w->count = count;
+    w->own = lanes_of(LOOKUPS);
+}
+
+/* Way k is 2^k times as long as the first, and counts as much. */
+LANES_INLINE void put_doubled(struct ways *w, const lanes first[3], uint32_t k)
+{
+    for (int i = 0; i < 3; i++)
+        lanes_store(w->way[k][i], first[i] << k);
+    w->shift[k] = k;
 }
 
 /// Octaves ///
@@ -137,7 +155,7 @@ LANES_INLINE lanes cache_sums(const struct brume_frame *f,
     for (int i = 0; i < 3; i++) {
         p[i] = (p[i] >> c->spacing_log2) - 0x8000u;
         if (f->lit.stochastic)
-            p[i] += lanes_load(b->queue.moved[i] + at) - 0x8000u;
+            p[i] += lanes_load(b->lit.moved[i] + at) - 0x8000u;
     }
     sum = dense_lanes(b, &g, p, between);
     if (c->blend == 0)
@@ -206,7 +224,7 @@ LANES_INLINE lanes near_segments(const struct brume_frame *f, struct patch *b,
                                  const struct light_lanes *light, uint32_t at)
 {
     struct ways *w = &b->lit.ways;
-    for (w->count = 0; w->count < light->samples; w->count++) {
+    for (; w->count < light->samples; w->count++) {
         lanes way[3];
         uint32_t length = segment_log2(f, w->count);
         if (f->lit.cone_level + (int32_t)length > 0)
@@ -216,7 +234,7 @@ LANES_INLINE lanes near_segments(const struct brume_frame *f, struct patch *b,
             lanes_store(w->way[w->count][i], way[i]);
         w->shift[w->count] = length;
     }
-    lanes sum = lanes_load(b->queue.d + at) + b->sum_ways(f, b, at);
+    lanes sum = lanes_load(b->lit.d + at) + b->sum_ways(f, b, at);
     return is_narrow_frame(f) ? sum << 8 : sum;
 }
 
@@ -234,7 +252,7 @@ static lanes cone_sums(const struct brume_frame *f, struct patch *b,
     lanes fit = lanes_leading_zeros(magnitudes(light.first[0]) |
                                     magnitudes(light.first[1]) |
                                     magnitudes(light.first[2]));
-    b->lit.ways.wanted = mask_first(n);
+    begin_ways(&b->lit.ways, n, 0);
     lanes sum = near_segments(f, b, &light, at);
     lanes_mask wanted = b->lit.ways.wanted;
     for (uint32_t i = b->lit.ways.count; i < light.samples; i++) {
@@ -257,148 +275,73 @@ static lanes cone_sums(const struct brume_frame *f, struct patch *b,
     return sum;
 }
 
-/// Light without light samples ///
+/// Sun ///
 
-/* Lights the queue's samples before number `end`: by cones, the cache, or with
- * nothing between them and the sun. */
-LANES_CALL void light_by_grids(const struct brume_frame *f, struct patch *b,
-                               uint32_t end)
-{
-    for (uint32_t at = 0; at < end; at += WIDE_LANES) {
-        uint32_t n = end - at < WIDE_LANES ? end - at : WIDE_LANES;
-        lanes sum = f->lit.light == BRUME_CONE    ? cone_sums(f, b, at, n)
-                    : f->lit.light == BRUME_CACHE ? cache_sums(f, b, at)
-                                                  : lanes_of(0);
-        add_octaves(f, b, at, n, sum);
-    }
-}
-
-/// Sky ///
-
-/* baked_sky */
-LANES_INLINE lanes baked_skies(const struct brume_frame *f,
-                               const struct patch *b, uint32_t at)
-{
-    const struct brume_volume *v = f->volume;
-    struct dense g = {
-        v->sky, {v->cell_count[0], v->cell_count[1], v->cell_count[2]}, false};
-    lanes p[3];
-    queued_positions(p, f, &b->queue, at);
-    for (int i = 0; i < 3; i++)
-        p[i] = (p[i] >> 3) - 0x8000u;
-    return lanes_mul_hi(dense_lanes(b, &g, p, true) << 8,
-                        lanes_of(1077952577u));
-}
-
-/* sky_direction */
-LANES_INLINE void sky_directions(lanes out[3], const struct brume_frame *f,
-                                 const struct patch *b, uint32_t at, uint32_t n)
-{
-    const struct brume_direction_table *t = f->lit.lighting->directions;
-    lanes ray = lanes_where(mask_first(n), lanes_load(b->queue.ray + at));
-    lanes nth = lanes_load(b->queue.nth + at);
-    lanes x = gather_words(b->lit.x, ray), y = gather_words(b->lit.y, ray);
-    uint32_t frame = brume_noise_frame(f) & ((1u << t->frames_log2) - 1u);
-    x += (nth * 3242174889u) >> (32u - t->width_log2);
-    y += (nth * 2447445414u) >> (32u - t->height_log2);
-    x &= (1u << t->width_log2) - 1u;
-    y &= (1u << t->height_log2) - 1u;
-    lanes i = (((y | frame << t->height_log2) << t->width_log2) | x) * 3u;
-    for (uint32_t axis = 0; axis < 3; axis++) {
-        lanes a = gather_bytes((const uint8_t *)t->values, i + axis);
-        out[axis] = with_signs((a ^ 0x80u) - 0x80u, 0u - (nth & 1u));
-    }
-}
-
-/* sky_transmittance; the direction is `way` */
-static lanes sky_transmittances(lanes way[3], const struct brume_frame *f,
-                                struct patch *b, uint32_t at, uint32_t n)
+/* Sums of log. */
+LANES_INLINE lanes log_sums(const struct brume_frame *f, struct patch *b,
+                            uint32_t at, uint32_t n)
 {
     struct ways *w = &b->lit.ways;
-    lanes local[3];
-    sky_directions(local, f, b, at, n);
-    for (int i = 0; i < 3; i++) {
-        way[i] = lanes_of(0);
-        for (int axis = 0; axis < 3; axis++) {
-            lanes a = lanes_of((uint32_t)f->lit.sky_axis[axis][i]);
-            lanes m = mul_round_lanes(a, magnitudes(local[axis]) << 18, 7);
-            way[i] += with_signs(m, signs_of(local[axis]));
+    struct light_lanes light;
+    begin_light(&light, f, &b->queue, at);
+    begin_ways(w, n, light.samples);
+    w->own = light.own;
+    for (uint32_t k = 0; k < w->count; k++)
+        put_doubled(w, light.first, k);
+    return b->sum_ways(f, b, at);
+}
+
+/* Sums of uniform by stochastic lookups: a few samples at a time, as long as
+ * any is in the pool. */
+static lanes uniform_sums(const struct brume_frame *f, struct patch *b,
+                          uint32_t at, uint32_t n)
+{
+    struct ways *w = &b->lit.ways;
+    lanes sum = lanes_of(0);
+    begin_ways(w, n, 0);
+    for (uint32_t k = 0; k < f->light.samples; k += w->count) {
+        uint32_t left = f->light.samples - k;
+        if (!mask_any(w->wanted))
+            break;
+        w->count = left < LOOKUPS ? left : LOOKUPS;
+        for (uint32_t j = 0; j < w->count; j++) {
+            for (int i = 0; i < 3; i++)
+                lanes_store(
+                    w->way[j][i],
+                    lanes_of((uint32_t)f->light.first[i] +
+                             (k + j) * (uint32_t)f->light_line.move[i]));
+            w->shift[j] = 0;
         }
+        sum += b->sum_ways(f, b, at);
     }
-    w->wanted = mask_first(n);
-    w->count = f->lit.sky_samples;
-    for (uint32_t k = 0; k < w->count; k++) {
-        for (int i = 0; i < 3; i++)
-            lanes_store(w->way[k][i], way[i] << k);
-        w->shift[k] = k;
-    }
-    return sun_transmittances(&f->lit.sky_tau, b->sum_ways(f, b, at));
+    return sum;
 }
 
-/* height_of */
-LANES_INLINE lanes heights_of(const struct brume_frame *f,
-                              const struct queue *q, uint32_t at)
+/* Is the sun's light the business of light_lit? Else of a kernel alone. */
+LANES_INLINE bool is_queue_lit(const struct brume_frame *f)
 {
-    lanes above = lanes_of(0u - (uint32_t)f->lit.low);
-    for (int i = 0; i < 3; i++) {
-        lanes m = lanes_of(magnitude(f->lit.zenith[i]));
-        lanes p = lanes_load(q->p[i] + at);
-        above += with_signs(lanes_mul_hi(m, p) + (m * p >> 31),
-                            lanes_of(sign_mask(f->lit.zenith[i])));
-    }
-    above = lanes_unless(mask_high(above), above);
-    uint32_t up = (uint32_t)(f->lit.per_height.e + 62) & 31u;
-    lanes height = lanes_mul_hi(above << up, lanes_of(f->lit.per_height.m))
-                   << 2;
-    height = lanes_select(mask_less(above, lanes_of(f->lit.height)), height,
-                          lanes_of(0xffffffffu));
-    return lanes_where(mask_less(lanes_of(0), above), height);
+    return f->lit.on && (f->lit.light != BRUME_UNIFORM || f->lit.stochastic);
 }
 
-/* add_cube */
-static void add_cubes(struct patch *b, uint32_t at, uint32_t n, lanes seen,
-                      lanes way[3])
+static lanes lit_sums(const struct brume_frame *f, struct patch *b, uint32_t at,
+                      uint32_t n)
 {
-    normalise_lanes(way);
-    for (int i = 0; i < 3; i++) {
-        lanes m = magnitudes(way[i]) << 1;
-        lanes square = lanes_mul_hi(m, m);
-        lanes share = lanes_select(mask_less(square, lanes_of(1u << 30)),
-                                   square << 2, lanes_of(0xffffffffu));
-        lanes_mask down = mask_high(way[i]);
-        share = lanes_mul_hi(seen, share);
-        add_to_rays(b->lit.sky[2 * i], &b->queue, at, n,
-                    lanes_unless(down, share));
-        add_to_rays(b->lit.sky[2 * i + 1], &b->queue, at, n,
-                    lanes_where(down, share));
+    switch (f->lit.light) {
+    case BRUME_LOG: return log_sums(f, b, at, n);
+    case BRUME_UNIFORM: return uniform_sums(f, b, at, n);
+    case BRUME_CONE: return cone_sums(f, b, at, n);
+    case BRUME_CACHE: return cache_sums(f, b, at);
+    default: return lanes_of(0);
     }
 }
 
-/* add_sky, for the queue's samples before number `end` */
-LANES_CALL void light_from_sky(const struct brume_frame *f, struct patch *b,
-                               uint32_t end)
+/* Lights the queue's samples before number `end`. */
+LANES_CALL void light_lit(const struct brume_frame *f, struct patch *b,
+                          uint32_t end)
 {
-    const struct queue *q = &b->queue;
-    bool baked = f->lit.visibility == BRUME_SKY_BAKED;
-    if (f->lit.ambient == BRUME_AMBIENT_NONE)
-        return;
     for (uint32_t at = 0; at < end; at += WIDE_LANES) {
         uint32_t n = end - at < WIDE_LANES ? end - at : WIDE_LANES;
-        lanes way[3], through = lanes_of(1u << 30);
-        if (samples_sky(f))
-            through = sky_transmittances(way, f, b, at, n);
-        else if (baked)
-            through = baked_skies(f, b, at);
-        lanes seen = lanes_mul_hi(lanes_load(q->lost + at), through);
-        if (f->lit.ambient == BRUME_AMBIENT_GRADIENT) {
-            lanes upper = lanes_mul_hi(seen, heights_of(f, q, at));
-            add_to_rays(b->lit.sky[0], q, at, n, upper);
-            add_to_rays(b->lit.sky[1], q, at, n, seen - upper);
-        } else if (f->lit.ambient == BRUME_AMBIENT_CUBE && samples_sky(f)) {
-            add_cubes(b, at, n, seen, way);
-        } else {
-            add_to_rays(b->lit.sky[0], q, at, n, seen);
-        }
+        add_octaves(f, b, at, n, lit_sums(f, b, at, n));
     }
 }
 
@@ -419,15 +362,15 @@ LANES_CALL void clear_lit(struct patch *b, uint32_t ray)
 }
 
 LANES_CALL void add_lit_rays(const struct brume_frame *f, struct patch *b,
-                             uint32_t ray, const struct rays *r)
+                             uint32_t ray, struct rays r)
 {
     for (uint32_t i = 0; i < 3; i++) {
-        lanes_store(b->lit.unit[i] + ray, r->unit[i]);
+        lanes_store(b->lit.unit[i] + ray, r.unit[i]);
         if (f->lit.stochastic)
-            lanes_store(b->lit.noise[i] + ray, lookup_noises(f, r->x, r->y, i));
+            lanes_store(b->lit.noise[i] + ray, lookup_noises(f, r.x, r.y, i));
     }
-    lanes_store(b->lit.x + ray, r->x);
-    lanes_store(b->lit.y + ray, r->y);
+    lanes_store(b->lit.x + ray, r.x);
+    lanes_store(b->lit.y + ray, r.y);
 }
 
 /* The light and transmittance of a ray; its depth is there. Most of it is done

@@ -432,13 +432,15 @@ struct source {
     bool stochastic; /* lookups are moved: see want_moved */
 };
 
+/* `lit`: may lookups be stochastic? */
 LANES_INLINE struct source source_of(const struct brume_frame *f,
-                                     const struct wide_copy *c, struct kernel k)
+                                     const struct wide_copy *c, bool lit,
+                                     struct kernel k)
 {
     struct source s;
     s.frame = f;
     s.copy = c;
-    s.stochastic = !k.trilinear && f->lit.stochastic;
+    s.stochastic = lit && !k.trilinear && f->lit.stochastic;
     if (c != NULL)
         s.copied = copied_of(f, c, k);
     return s;
@@ -454,8 +456,8 @@ LANES_INLINE void want(struct lookups *l, uint32_t g, const struct source *s,
         want_cell(l, g, s->frame, p[0], p[1], p[2], wanted, k);
 }
 
-/* The same beside p where lookups are stochastic. Then the cells that are
- * looked up are not those to leap from. */
+/* The same beside p, where stochastic lookups look. The cells that are looked
+ * up then are not those to leap from. */
 LANES_INLINE void want_moved(struct lookups *l, uint32_t g,
                              const struct source *s, const lanes p[3],
                              const lanes moved[3], lanes_mask wanted,
@@ -463,7 +465,7 @@ LANES_INLINE void want_moved(struct lookups *l, uint32_t g,
 {
     lanes at[3];
     for (int i = 0; i < 3; i++)
-        at[i] = s->stochastic ? p[i] + moved[i] : p[i];
+        at[i] = p[i] + moved[i];
     want(l, g, s, at, wanted, k);
 }
 
@@ -487,7 +489,7 @@ LANES_INLINE void look_up(struct lookups *l, uint32_t n, const struct source *s,
  * 0, the others have 0. */
 LANES_INLINE lanes cells_to_leap(const struct lookups *l, uint32_t g,
                                  const struct source *s, const lanes p[3],
-                                 lanes_mask wanted)
+                                 lanes_mask wanted, struct kernel k)
 {
     const struct brume_frame *f = s->frame;
     if (s->copy == NULL && !s->stochastic)
@@ -497,7 +499,8 @@ LANES_INLINE lanes cells_to_leap(const struct lookups *l, uint32_t g,
         return lanes_of(0);
     lanes at = lanes_where(wanted, cell_number(f->volume, p[0], p[1], p[2]));
     lanes cell = gather_words(f->volume->cells, at);
-    if (f->leap_margin != 0) /* beside a brick: not here */
+    if ((k.trilinear || s->stochastic) &&
+        f->leap_margin != 0) /* beside a brick: not here */
         wanted = mask_less_those(
             wanted, mask_and(on_high_faces(p[0], p[1], p[2]),
                              mask_less(cell, lanes_of(BRUME_CELL_EMPTY + 2u))));

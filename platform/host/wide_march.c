@@ -42,8 +42,11 @@ LANES_INLINE void push(struct patch *b, const lanes p[3], lanes lost,
  * rays that go on, and those that do are returned. */
 LANES_INLINE lanes_mask lose_light(const struct brume_frame *f, struct patch *b,
                                    uint32_t ray, const lanes p[3], lanes left,
-                                   lanes d, lanes_mask on, struct kernel k)
+                                   lanes d, lanes_mask on, bool lit_rays,
+                                   struct kernel k)
 {
+    bool jittered =
+        f->jitter & BRUME_JITTER_LIGHT && f->light_kind != BRUME_UNIFORM;
     uint32_t at = b->queue.count;
     lanes_mask lit = mask_and(on, mask_less(lanes_of(f->min_density), d));
     if (!mask_any(lit))
@@ -51,8 +54,8 @@ LANES_INLINE lanes_mask lose_light(const struct brume_frame *f, struct patch *b,
     lanes transmittance = lanes_load(b->transmittance + ray);
     lanes lost =
         lanes_where(lit, lanes_mul_hi(transmittance, opacities(f, d, k)));
-    push(b, p, lost, ray, lit, !k.uniform && f->jitter & BRUME_JITTER_LIGHT);
-    if (f->lit.on)
+    push(b, p, lost, ray, lit, jittered);
+    if (lit_rays)
         push_lit(f, b, at, ray, d, lanes_load(b->samples + ray) - left, lit);
     transmittance -= lost;
     lanes_store(b->transmittance + ray, transmittance);
@@ -69,7 +72,8 @@ LANES_INLINE lanes_mask lose_light(const struct brume_frame *f, struct patch *b,
  * when all have ended. */
 LANES_INLINE bool step_group(const struct brume_frame *f,
                              const struct source *s, struct patch *b,
-                             uint32_t g, uint32_t ray, struct kernel k)
+                             uint32_t g, uint32_t ray, bool lit,
+                             struct kernel k)
 {
     lanes left = lanes_load(b->left + ray), m = lanes_of(1);
     lanes p[3], move[3], inverse[3];
@@ -80,7 +84,7 @@ LANES_INLINE bool step_group(const struct brume_frame *f,
     }
     for (uint32_t n = 0;; n++) {
         lanes d = lanes_load(b->lookups.d[g * AHEAD_VIEW + n]);
-        on = lose_light(f, b, ray, p, left - n, d, on, k);
+        on = lose_light(f, b, ray, p, left - n, d, on, lit, k);
         if (n == AHEAD_VIEW - 1)
             break;
         for (int i = 0; i < 3; i++)
@@ -88,13 +92,13 @@ LANES_INLINE bool step_group(const struct brume_frame *f,
     }
     on = mask_and(on, mask_less(lanes_of(AHEAD_VIEW - 1), left));
     left -= AHEAD_VIEW - 1;
-    lanes cell =
-        cells_to_leap(&b->lookups, g * AHEAD_VIEW + AHEAD_VIEW - 1, s, p, on);
+    lanes cell = cells_to_leap(&b->lookups, g * AHEAD_VIEW + AHEAD_VIEW - 1, s,
+                               p, on, k);
     lanes_mask empty = mask_high(cell);
     if (mask_any(empty)) {
         for (int i = 0; i < 3; i++)
             inverse[i] = lanes_load(b->inverse[i] + ray);
-        m = lanes_select(empty, leap_lanes(f, p, move, inverse, cell), m);
+        m = lanes_select(empty, leap_lanes(s, p, move, inverse, cell, k), m);
         for (int i = 0; i < 3; i++)
             move[i] *= m;
     }
@@ -105,33 +109,44 @@ LANES_INLINE bool step_group(const struct brume_frame *f,
     return mask_any(on);
 }
 
+/* Wants the next samples of group g; beside the ray where lookups are
+ * stochastic. */
+LANES_INLINE void want_group(const struct source *s, struct patch *b,
+                             uint32_t g, bool beside, struct kernel k)
+{
+    uint32_t ray = b->first[g];
+    lanes p[3], moved[3], left = lanes_load(b->left + ray);
+    for (int i = 0; i < 3; i++) {
+        p[i] = lanes_load(b->p[i] + ray);
+        moved[i] = lanes_of(0);
+    }
+    for (uint32_t n = 0; n < AHEAD_VIEW; n++) {
+        if (beside)
+            moves_of(moved, b, ray, lanes_load(b->samples + ray) - left + n);
+        want_moved(&b->lookups, g * AHEAD_VIEW + n, s, p, moved,
+                   mask_less(lanes_of(n), left), k);
+        for (int i = 0; i < 3; i++)
+            p[i] += lanes_load(b->move[i] + ray);
+    }
+}
+
 /* Moves the wave by some samples, and perhaps a leap. */
 LANES_INLINE void step_wave(const struct brume_frame *f,
                             const struct wide_copy *c, struct patch *b,
-                            struct kernel k)
+                            bool lit, struct kernel k)
 {
-    struct source s = source_of(f, c, k);
-    for (uint32_t g = 0; g < b->count; g++) {
-        uint32_t ray = b->first[g];
-        lanes p[3], moved[3] = {{0}}, left = lanes_load(b->left + ray);
-        for (int i = 0; i < 3; i++)
-            p[i] = lanes_load(b->p[i] + ray);
-        for (uint32_t n = 0; n < AHEAD_VIEW; n++) {
-            if (s.stochastic)
-                moves_of(moved, b, ray,
-                         lanes_load(b->samples + ray) - left + n);
-            want_moved(&b->lookups, g * AHEAD_VIEW + n, &s, p, moved,
-                       mask_less(lanes_of(n), left), k);
-            for (int i = 0; i < 3; i++)
-                p[i] += lanes_load(b->move[i] + ray);
-        }
-    }
+    struct source s = source_of(f, c, lit, k);
+    for (uint32_t g = 0; g < b->count; g++)
+        if (s.stochastic)
+            want_group(&s, b, g, true, k);
+        else
+            want_group(&s, b, g, false, k);
     look_up(&b->lookups, b->count * AHEAD_VIEW, &s, k);
     uint32_t to = 0;
     for (uint32_t g = 0; g < b->count; g++) {
         uint32_t ray = b->first[g];
         b->first[to] = ray;
-        to += step_group(f, &s, b, g, ray, k);
+        to += step_group(f, &s, b, g, ray, lit, k);
     }
     b->count = to;
     if (b->queue.count >= QUEUE - WAVE)
@@ -155,9 +170,11 @@ struct march_kernel {
                       uint32_t at);
 };
 
-/* A kernel of its own for each lookup and light; what it reads are the asset's
- * bricks, or copies (1). Of copies, halves serve u8r and u4r, clamped or not:
- * max_density is then above all densities. */
+/* A kernel of its own for each lookup and light. How rays move does not depend
+ * on whether light is uniform: of each two kernels, the step of the second is
+ * that of frames with lighting instead. What it reads are the asset's bricks, or
+ * copies (1). Of copies, halves serve u8r and u4r, clamped or not: max_density
+ * is then above all densities. */
 #define NAME(what, format, apron, tri, uni, clamp, copied) \
     what##_##format##_##apron##tri##uni##clamp##copied
 #define KERNEL(format, apron, tri, uni, clamp, copied) \
@@ -173,14 +190,15 @@ struct march_kernel {
     { \
         static const struct kernel k = \
             KERNEL_OF(format, apron, tri, uni, clamp); \
-        step_wave(f, copied ? some_copy(b->copy) : NULL, b, k); \
+        step_wave(f, copied ? some_copy(b->copy) : NULL, b, uni, k); \
     } \
     static lanes NAME(ways, format, apron, tri, uni, clamp, copied)( \
         const struct brume_frame *f, struct patch *b, uint32_t at) \
     { \
         static const struct kernel k = \
             KERNEL_OF(format, apron, tri, uni, clamp); \
-        struct source s = source_of(f, copied ? some_copy(b->copy) : NULL, k); \
+        struct source s = \
+            source_of(f, copied ? some_copy(b->copy) : NULL, true, k); \
         return sum_of_ways(f, &s, b, at, k); \
     }
 #define DIRECT_CLAMP(format, apron, tri, uni) \
@@ -212,16 +230,17 @@ ALL_KERNELS
 
 static const struct march_kernel k_kernels[128] = {ALL_KERNELS};
 
-/* The kernel for a frame, by copies if it can be. */
+/* The kernel for a frame, by copies if it can be; the first or, with 2, the
+ * second of its pair. */
 static const struct march_kernel *kernel_of(const struct brume_frame *f,
-                                            const struct wide_copy *c)
+                                            const struct wide_copy *c,
+                                            uint32_t second)
 {
-    bool lit = f->lit.on && f->lit.light == BRUME_UNIFORM;
-    uint32_t id = f->kernel | (lit ? 2u : 0), uniform = id & 2u;
+    uint32_t id = (f->kernel & ~2u) | second;
     bool u8 = f->volume->format == BRUME_U8, apron = f->volume->side == 9;
     bool trilinear = id & 4u, clamp = id & 1u;
     const struct march_kernel *direct = &k_kernels[id];
-    const struct march_kernel *copied = &k_kernels[64 + uniform];
+    const struct march_kernel *copied = &k_kernels[64 + second];
     if (c == NULL)
         return direct;
     if (!trilinear && u8)
@@ -263,7 +282,7 @@ static void add_rays(const struct brume_frame *f, struct patch *b, uint32_t ray,
         return;
     b->first[b->count++] = ray;
     if (f->lit.on)
-        add_lit_rays(f, b, ray, &r);
+        add_lit_rays(f, b, ray, r);
     if (f->jitter & BRUME_JITTER_LIGHT)
         for (int i = 0; i < 3; i++)
             lanes_store(b->light_first[i] + ray, light_first[i]);
@@ -318,11 +337,14 @@ static void march_patch(const struct brume_frame *f, struct patch *b,
                         uint32_t x, uint32_t y, uint32_t w, uint32_t h,
                         struct brume_radiance *out, size_t stride)
 {
-    const struct march_kernel *k = kernel_of(f, b->copy);
+    bool uniform = f->lit.on ? f->lit.light == BRUME_UNIFORM
+                             : f->light_kind == BRUME_UNIFORM;
+    const struct march_kernel *k = kernel_of(f, b->copy, f->lit.on ? 2u : 0);
+    const struct march_kernel *light = kernel_of(f, b->copy, uniform ? 2u : 0);
     lanes column = lanes_count() % TILE_WIDTH, row = lanes_count() / TILE_WIDTH;
     uint32_t ray = 0;
     bool miss = false;
-    b->light = k->light;
+    b->light = light->light;
     b->sum_ways = k->sum_ways;
     b->count = b->queue.count = 0;
     for (uint32_t j = 0; j < h; j += TILE_HEIGHT)
@@ -339,7 +361,7 @@ static void march_patch(const struct brume_frame *f, struct patch *b,
         }
     while (b->count != 0)
         k->step(f, b);
-    k->light(f, b, true);
+    b->light(f, b, true);
     ray = 0;
     for (uint32_t j = 0; j < h; j += TILE_HEIGHT)
         for (uint32_t i = 0; i < w; i += TILE_WIDTH, ray += WIDE_LANES)

@@ -26,9 +26,6 @@ struct queue {
     uint32_t lost ROOM(QUEUE), ray ROOM(QUEUE);
     uint32_t light_first[3] ROOM(QUEUE); /* if jittered */
     uint32_t count;
-    /* For wide_lit.h: density; number of the ray's lit sample; where
-     * stochastic lookups look. */
-    uint32_t d ROOM(QUEUE), nth ROOM(QUEUE), moved[3] ROOM(QUEUE);
 } __attribute__((aligned(64)));
 
 /* Ways from a vector of samples, nearest first: the density at the end of each,
@@ -36,11 +33,15 @@ struct queue {
 struct ways {
     uint32_t way[LOOKUPS][3][WIDE_LANES];
     uint32_t shift[LOOKUPS], count;
+    lanes own;         /* how many are taken of each sample's */
     lanes_mask wanted; /* samples; afterwards those with all ways in the pool */
 } __attribute__((aligned(64)));
 
-/* Of rays with lighting. */
+/* Of rays with lighting; and of the queue's samples. */
 struct lit_rays {
+    uint32_t d ROOM(QUEUE);                /* density */
+    uint32_t nth ROOM(QUEUE);              /* number of the ray's lit sample */
+    uint32_t moved[3] ROOM(QUEUE);         /* of stochastic lookups */
     uint32_t unit[3] ROOM(PATCH);          /* direction, Q2.30 */
     uint32_t x ROOM(PATCH), y ROOM(PATCH); /* of the grid */
     uint32_t noise[3] ROOM(PATCH);         /* of stochastic lookups */
@@ -66,9 +67,9 @@ struct patch {
     uint32_t samples ROOM(PATCH);    /* that there were; of the ray */
     uint32_t t ROOM(PATCH);          /* of the first */
     uint32_t transmittance ROOM(PATCH), moment ROOM(PATCH);
+    uint32_t light_first[3] ROOM(PATCH);         /* if jittered */
     uint32_t sun[BRUME_MAX_OCTAVES] ROOM(PATCH); /* A_i, Q3.29; without
                                                   * lighting the first */
-    uint32_t light_first[3] ROOM(PATCH);         /* if jittered */
     struct lit_rays lit;
 } __attribute__((aligned(64)));
 
@@ -91,16 +92,24 @@ LANES_INLINE lanes inverse_of(lanes move, bool skip)
 
 /* As leap of the core, but now and then one less: the inverse is too small by
  * more than floats are rounded, which costs a lookup and no pixel. */
-LANES_INLINE lanes leap_lanes(const struct brume_frame *f, const lanes p[3],
-                              const lanes move[3], const lanes inverse[3],
-                              lanes cell)
+LANES_INLINE lanes leap_by(uint32_t margin, const lanes p[3],
+                           const lanes move[3], const lanes inverse[3],
+                           lanes cell)
 {
-    uint32_t margin = f->leap_margin;
     lanes far = (cell << 19) - (1u << 19);
     lanes_float n = way_of(p[0], move[0], far, margin, inverse[0]);
     n = lanes_min_float(n, way_of(p[1], move[1], far, margin, inverse[1]));
     n = lanes_min_float(n, way_of(p[2], move[2], far, margin, inverse[2]));
     return lanes_from_float(n) + 1u;
+}
+
+LANES_INLINE lanes leap_lanes(const struct source *s, const lanes p[3],
+                              const lanes move[3], const lanes inverse[3],
+                              lanes cell, struct kernel k)
+{
+    if (k.trilinear || s->stochastic)
+        return leap_by(s->frame->leap_margin, p, move, inverse, cell);
+    return leap_by(0, p, move, inverse, cell);
 }
 
 /// Light ///
@@ -111,7 +120,6 @@ struct light_lanes {
     uint32_t samples; /* of all */
     bool unequal;     /* each has a number of its own: */
     lanes own;
-    lanes moved[3];
 };
 
 /* Those of the n samples from number `at` of the queue on. A sample whose
@@ -128,9 +136,6 @@ LANES_INLINE void begin_light(struct light_lanes *light,
     for (int i = 0; i < 3; i++)
         light->first[i] = jittered ? lanes_load(q->light_first[i] + at)
                                    : lanes_of((uint32_t)f->light.first[i]);
-    for (int i = 0; i < 3; i++)
-        light->moved[i] =
-            f->lit.stochastic ? lanes_load(q->moved[i] + at) : lanes_of(0);
     light->own = light->unequal ? light_samples_of(light->first, f)
                                 : lanes_of(light->samples);
 }

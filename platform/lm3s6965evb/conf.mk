@@ -3,7 +3,7 @@ BOARD = lm3s6965evb
 TARGET_CPU = cortex-m3
 TARGET_FLASH = 262144
 TARGET_RAM = 65536
-TARGET_ASSETS_MAX = 204800
+TARGET_ASSETS_MAX = 135168
 TARGET_STATE_BYTES = 0
 include platform/cortexm/cortexm.mk
 DEMO_SRC = platform/lm3s6965evb/demo.c platform/lm3s6965evb/oled.c \

@@ -3,7 +3,7 @@ BOARD = microbit
 TARGET_CPU = cortex-m0
 TARGET_FLASH = 262144
 TARGET_RAM = 16384
-TARGET_ASSETS_MAX = 204800
+TARGET_ASSETS_MAX = 135168
 TARGET_STATE_BYTES = 0
 include platform/cortexm/cortexm.mk
 DEMO_SRC = platform/microbit/demo.c platform/demo/demo.c
