@@ -21,3 +21,19 @@ do for [volume in "disney cumulus smoke"] {
         using 1:2 with linespoints pt 7 ps 0.6 lw 1.5 title kind
 }
 unset multiplot
+
+set output dir . "/stochastic.svg"
+set multiplot layout 1,3
+set xlabel "frame"
+set xtics auto
+set xrange [0:31]
+set yrange [0.1:10]
+do for [volume in "disney cumulus smoke"] {
+    set title volume
+    set ylabel volume eq "disney" ? "RMSE of 255 to trilinear" : ""
+    plot for [noise in "nearest white fast r2"] \
+        dir . "/stochastic.csv" using \
+        (strcol(1) eq volume && strcol(2) eq noise ? $3 : 1/0):4 \
+        with linespoints pt 7 ps 0.4 lw 1.5 title noise
+}
+unset multiplot

@@ -138,6 +138,50 @@ awk -F, -v dir="$out" '
         }
     }' "$csv"
 
+# One random voxel for eight: against trilinear lookups of the same samples, by
+# the frame of an average over time; without jitter of the samples themselves.
+stochastic()
+{
+    volume=$1
+    still="--set size=480x270 --set jitter=none --set output=linear --set
+        light=log --set light_samples=10 --set light_step=1"
+    # shellcheck disable=SC2086
+    "$BUILD/brume" render "$volumes/mips_$volume.brume" $still \
+        --set filter=trilinear -o "$out/light_true.png"
+    for noise in nearest white fast r2; do
+        filter=stochastic
+        [ "$noise" != nearest ] || filter=nearest
+        # shellcheck disable=SC2086
+        "$BUILD/brume" render "$volumes/mips_$volume.brume" $still \
+            --frames 0:31 --set temporal=ema --set alpha=0.1 --set \
+            noise="$(echo "$noise" | sed 's/nearest/none/')" \
+            --set filter=$filter -o "$out/stochastic_%02d.png"
+        for frame in $(seq 0 31); do
+            metrics=$("$BUILD/brume" compare \
+                "$(printf '%s/stochastic_%02d.png' "$out" "$frame")" \
+                "$out/light_true.png")
+            echo "$volume,$noise,$frame,$(value rmse),$(value mean)"
+        done
+    done
+}
+
+echo "volume,noise,frame,rmse,mean" >"$out/stochastic.csv"
+for volume in disney cumulus smoke; do
+    [ ! -f "$volumes/mips_$volume.brume" ] ||
+        stochastic "$volume" >>"$out/stochastic.csv"
+done
+printf '\n| stochastic against trilinear: frame 0, frame 31 | nearest | white |'
+printf ' fast | r2 |\n|---|---|---|---|---|\n'
+awk -F, 'NR > 1 && ($3 == 0 || $3 == 31) {
+        cell[$1] = cell[$1] ($3 == 0 ? " | " : ", ") sprintf("%.2f", $4)
+        mean[$1] = mean[$1] ($3 == 31 ? " | " sprintf("%+.3f", $5) : "")
+    }
+    END {
+        for (v in cell)
+            print "| " v ", RMSE" cell[v] " |\n| " v ", mean, frame 31" \
+                mean[v] " |"
+    }' "$out/stochastic.csv"
+
 if command -v gnuplot >/dev/null; then
     gnuplot -e "dir='$out'" "$here/light.gp"
 fi

@@ -247,6 +247,9 @@ uint32_t brume_lit_sameness(const struct brume_frame *frame)
      * behind the volume do not count. */
     const struct brume_lit *l = &frame->lit;
     uint32_t h = l->light + l->octaves * 16u + (l->stochastic ? 256u : 0);
+#if BRUME_WITH_CACHE
+    h ^= l->cache.blend << 12; /* goes on while a cache is being made */
+#endif
     for (uint32_t i = 0; i < BRUME_MAX_OCTAVES; i++)
         h = (h * 16777619u ^ l->tau[i].m) * 16777619u ^
             (l->tau[i].shift ^ l->weight[i]);

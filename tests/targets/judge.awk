@@ -154,6 +154,26 @@ function pass_table(i, s, t, size, pixels, n, name) {
     }
 }
 
+# Instructions per covered pixel of the scenes with lighting, on the same
+# targets.
+function light_table(i, s, t, n, name) {
+    n = split("mps2-an386 mps2-an386-Os mps2-m0 mps2-m0-Os", name, " ")
+    print ""
+    print "| lighting, instructions per covered pixel | " name[1] " | " \
+        name[2] " | " name[3] " | " name[4] " |"
+    print "|---|---|---|---|---|"
+    for (i = 1; i <= scene_count; i++) {
+        s = scenes[i]
+        if (s !~ /^lit_/ || !((name[1], s) in count))
+            continue
+        printf "| %s", s
+        for (t = 1; t <= n; t++)
+            printf " | %s", (name[t], s) in count ? \
+                ratio(count[name[t], s], rays[s], 0) : "-"
+        print " |"
+    }
+}
+
 function table(i, t, s) {
     print "| target | compiler | flags | images | px | lookup | view |" \
         " light | code | rodata | data | bss | painted | bound |"
@@ -184,6 +204,7 @@ function table(i, t, s) {
             or_dash(view[s]) " | " or_dash(light[s]) " |"
     }
     pass_table()
+    light_table()
     demo_table()
 }
 
