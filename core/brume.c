@@ -303,7 +303,7 @@ int brume_begin_frame(struct brume_frame *frame,
     if (!brume_normalise(frame->sun))
         return BRUME_ERR_SUN;
     err = brume_march_begin(frame, scene);
-#if BRUME_WITH_AMBIENT || BRUME_WITH_SKY
+#if BRUME_WITH_SKY
     if (err == BRUME_OK)
         brume_sky_begin(frame, scene);
 #endif

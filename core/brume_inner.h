@@ -103,6 +103,10 @@ struct brume_number brume_number_plus(struct brume_number a,
 /* log2(a) with 16 fraction bits; a > 0. Error < 2^-14. */
 int32_t brume_log2(struct brume_number a);
 
+/* 1 - cos of the angle between two unit vectors, all Q2.30, as half the square
+ * of their difference: exact where they are nearly the same. */
+uint32_t brume_one_minus_cos(const int32_t a[3], const int32_t b[3]);
+
 /* 2^y, y in Q16.16. Relative error < 2^-12. */
 struct brume_number brume_exp2(uint32_t y);
 #endif
@@ -263,7 +267,6 @@ uint32_t brume_inverse_of_move(int32_t move);
 /// brume_lit.c ///
 
 #if BRUME_WITH_LIGHTING
-/* Has the light of the scene colours? */
 BRUME_INLINE bool brume_is_grey(const uint32_t c[3])
 {
     return c[0] == c[1] && c[1] == c[2];
@@ -277,10 +280,11 @@ BRUME_INLINE uint32_t brume_ambient_colours(uint32_t ambient)
                                                : 6u;
 }
 
+/* Has the light of the scene colours? Behind the volume they do not count. */
 BRUME_INLINE bool brume_scene_has_colour(const struct brume_scene *s)
 {
     const struct brume_lighting *l = s->lighting;
-    if (!BRUME_WITH_COLOUR || l == NULL)
+    if (l == NULL)
         return false;
     bool grey = brume_is_grey(l->sun_colour);
     for (uint32_t j = 0; j < brume_ambient_colours(l->ambient); j++)
@@ -576,13 +580,11 @@ void brume_resolve_span(const struct brume_frame *frame,
 
 /// brume_sky.c ///
 
-#if BRUME_WITH_AMBIENT || BRUME_WITH_SKY
-/* Sets zenith, and what is behind the volume, of a checked scene. */
+#if BRUME_WITH_SKY
+/* Sets what is behind the volume, of a checked scene. */
 void brume_sky_begin(struct brume_frame *frame,
                      const struct brume_scene *scene);
-#endif
 
-#if BRUME_WITH_SKY
 /* The sky at pixel (x, y), Q16.16, at most BRUME_MAX_LIGHT. */
 void brume_sky_colour(const struct brume_frame *frame, uint32_t x, uint32_t y,
                       uint32_t out[3]);

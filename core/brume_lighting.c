@@ -44,9 +44,11 @@ static bool sky_is_good(const struct brume_lighting *l)
 }
 
 /* Does the lighting ask for what is not compiled in? */
-static bool is_missing(const struct brume_lighting *l)
+static bool is_missing(const struct brume_scene *s)
 {
-    return (!BRUME_WITH_AMBIENT && l->ambient != BRUME_AMBIENT_NONE) ||
+    const struct brume_lighting *l = s->lighting;
+    return (!BRUME_WITH_COLOUR && brume_scene_has_colour(s)) ||
+           (!BRUME_WITH_AMBIENT && l->ambient != BRUME_AMBIENT_NONE) ||
            (!BRUME_WITH_SKY && (l->sky || l->haze != 0)) ||
            (!BRUME_WITH_DITHER && l->dither);
 }
@@ -72,7 +74,7 @@ int brume_lit_check(const struct brume_scene *scene)
         !colours_are_good(&l->sun_colour, 1) || !ambient_is_good(l) ||
         !sky_is_good(l) || (l->haze != 0 && l->haze < 0x10000u))
         return BRUME_ERR_SCENE;
-    return is_missing(l) ? BRUME_ERR_FEATURE : BRUME_OK;
+    return is_missing(scene) ? BRUME_ERR_FEATURE : BRUME_OK;
 }
 
 /* albedo * colour * exposure, Q16.16, each channel */
@@ -169,10 +171,6 @@ static int set_ambient(struct brume_frame *f, const struct brume_scene *s)
                 sum += f->lit.ambient_colour[j][c];
             f->lit.ambient_colour[0][c] = sum / 6u;
         }
-    for (int i = 0; i < 3; i++)
-        f->lit.zenith[i] = l->zenith[i];
-    if (!brume_normalise(f->lit.zenith))
-        f->lit.zenith[1] = 1 << 30;
     set_heights(f, s);
     f->lit.sky_samples = l->visibility_samples;
     if (l->visibility == BRUME_SKY_SAMPLED) {
@@ -197,6 +195,12 @@ int brume_lit_begin(struct brume_frame *frame, const struct brume_scene *scene)
     f->lit.on = brume_scene_is_lit(scene);
     f->lit.light = scene->light;
     f->lit.stochastic = scene->filter == BRUME_STOCHASTIC;
+#if BRUME_WITH_AMBIENT || BRUME_WITH_SKY
+    for (int i = 0; i < 3 && l != NULL; i++)
+        f->lit.zenith[i] = l->zenith[i];
+    if (!brume_normalise(f->lit.zenith))
+        f->lit.zenith[1] = 1 << 30;
+#endif
     for (int c = 0; c < 3; c++)
         f->lit.sun[c] = scene->albedo;
 #if BRUME_WITH_CONE

@@ -105,33 +105,13 @@ static uint32_t times_number(uint32_t a, uint32_t down, struct brume_number n)
     return high << (uint32_t)up | low >> (32u - (uint32_t)up);
 }
 
-/* 1 - cos of the angle between ray and sun, Q2.30: |ray - sun|^2 / 2. */
-static uint32_t one_minus_cos(const int32_t a[3], const int32_t b[3])
-{
-    uint32_t m[3], all = 1, sum = 0;
-    for (int i = 0; i < 3; i++) {
-        m[i] = a[i] < b[i] ? (uint32_t)b[i] - (uint32_t)a[i]
-                           : (uint32_t)a[i] - (uint32_t)b[i];
-        all |= m[i];
-    }
-    unsigned up = leading_zeros(all);
-    for (int i = 0; i < 3; i++) {
-        uint32_t s = m[i] << up;
-        sum += mul_hi_floor(s, s) >> 2;
-    }
-    /* Q(28 + 2 up - 2), halved */
-    int32_t down = 2 * (int32_t)up - 3;
-    uint32_t u = down < 0 ? sum << -down : down < 32 ? sum >> down : 0;
-    return u < 0x80000000u ? u : 0x80000000u;
-}
-
 /* Sum of octaves with their phase, Q29 less the headroom; held to what fits. */
 static uint32_t sun_light(const struct brume_frame *f, const struct gathered *g,
                           const int32_t unit[3])
 {
     const struct brume_lighting *l = f->lit.lighting;
     bool peaked = l != NULL && l->phase != NULL;
-    uint32_t u = peaked ? one_minus_cos(unit, f->sun) : 0, sum = 0;
+    uint32_t u = peaked ? brume_one_minus_cos(unit, f->sun) : 0, sum = 0;
     for (uint32_t i = 0; i < f->lit.octaves; i++) {
         uint32_t a = g->sun[i];
         if (f->lit.weight[i] != 0xffffffffu)

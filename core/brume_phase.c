@@ -178,6 +178,25 @@ struct brume_number brume_exp2(uint32_t y)
     return brume_number_of(m, (int32_t)(y >> 16) - 29);
 }
 
+uint32_t brume_one_minus_cos(const int32_t a[3], const int32_t b[3])
+{
+    uint32_t m[3], all = 1, sum = 0;
+    for (int i = 0; i < 3; i++) {
+        m[i] = a[i] < b[i] ? (uint32_t)b[i] - (uint32_t)a[i]
+                           : (uint32_t)a[i] - (uint32_t)b[i];
+        all |= m[i];
+    }
+    unsigned up = leading_zeros(all);
+    for (int i = 0; i < 3; i++) {
+        uint32_t s = m[i] << up;
+        sum += mul_hi_floor(s, s) >> 2;
+    }
+    /* Q(28 + 2 up - 2), halved */
+    int32_t down = 2 * (int32_t)up - 3;
+    uint32_t u = down < 0 ? sum << -down : down < 32 ? sum >> down : 0;
+    return u < 0x80000000u ? u : 0x80000000u;
+}
+
 struct brume_number brume_phase_value(const struct brume_phase *phase,
                                       uint32_t u)
 {

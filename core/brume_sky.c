@@ -3,11 +3,10 @@
  * ground below it, and the sun's disc; docs/light.md has the definition. */
 #include "brume_inner.h"
 
-#if BRUME_WITH_AMBIENT || BRUME_WITH_SKY
+#if BRUME_WITH_SKY
 
 #define ONE 0x40000000u /* Q2.30 */
 
-#if BRUME_WITH_SKY
 /* Colours of struct brume_lit. */
 enum { ZENITH, HORIZON, GROUND, DISC };
 
@@ -19,8 +18,10 @@ static void expose(uint32_t out[3], const uint32_t colour[3], uint32_t exposure)
         out[c] = (mul_hi_floor(colour[c] << 10, e << 10) + 8u) >> 4;
 }
 
-static void set_sky(struct brume_lit *lit, const struct brume_lighting *l)
+void brume_sky_begin(struct brume_frame *frame, const struct brume_scene *scene)
 {
+    const struct brume_lighting *l = scene->lighting;
+    struct brume_lit *lit = &frame->lit;
     lit->sky = l != NULL && l->sky;
     lit->haze = 0;
     if (l == NULL)
@@ -33,22 +34,6 @@ static void set_sky(struct brume_lit *lit, const struct brume_lighting *l)
     expose(lit->sky_colour[GROUND], l->sky_ground, l->exposure);
     expose(lit->sky_colour[DISC], l->sun_disc, l->exposure);
 }
-#endif
-
-void brume_sky_begin(struct brume_frame *frame, const struct brume_scene *scene)
-{
-    const struct brume_lighting *l = scene->lighting;
-    struct brume_lit *lit = &frame->lit;
-    for (int i = 0; i < 3; i++)
-        lit->zenith[i] = l != NULL ? l->zenith[i] : 0;
-    if (!brume_normalise(lit->zenith))
-        lit->zenith[1] = (int32_t)ONE;
-#if BRUME_WITH_SKY
-    set_sky(lit, l);
-#endif
-}
-
-#if BRUME_WITH_SKY
 /* from + (to - from) * (1 - s)^4, s and the power in Q2.30 from 0 to 1. Error
  * of the power below 2^-28. */
 static void gradient(uint32_t out[3], const uint32_t from[3],
@@ -63,18 +48,6 @@ static void gradient(uint32_t out[3], const uint32_t from[3],
                        mul_signed_round((int32_t)(to[c] - from[c]), fourth, 2));
 }
 
-/* 1 - cos of the angle between two unit vectors, 0 .. 2 in Q2.30: half the
- * square of their difference, which stays exact where cos is nearly 1. */
-static uint32_t turned(const int32_t a[3], const int32_t b[3])
-{
-    uint32_t sum = 0;
-    for (int i = 0; i < 3; i++) {
-        int32_t half = a[i] / 2 - b[i] / 2;
-        sum += (uint32_t)mul_both_signed_round(half, half, 2);
-    }
-    return 2u * sum;
-}
-
 void brume_sky_colour(const struct brume_frame *frame, uint32_t x, uint32_t y,
                       uint32_t out[3])
 {
@@ -83,7 +56,7 @@ void brume_sky_colour(const struct brume_frame *frame, uint32_t x, uint32_t y,
     brume_pixel_direction(frame, x, y, ray);
     brume_normalise(ray);
     int32_t s = brume_dot(ray, lit->zenith);
-    bool disc = turned(ray, frame->sun) < lit->lighting->sun_size;
+    bool disc = brume_one_minus_cos(ray, frame->sun) < lit->lighting->sun_size;
     for (int c = 0; c < 3; c++)
         out[c] = lit->sky_colour[GROUND][c];
     if (s >= 0)
@@ -94,5 +67,4 @@ void brume_sky_colour(const struct brume_frame *frame, uint32_t x, uint32_t y,
         out[c] = out[c] < BRUME_MAX_LIGHT ? out[c] : BRUME_MAX_LIGHT;
     }
 }
-#endif
 #endif

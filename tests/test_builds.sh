@@ -9,7 +9,8 @@ set -eu
 out=$BUILD/builds
 mkdir -p "$out"
 files="core/*.c tests/support/asset_builder.c tests/support/asset_light.c
-    tests/support/scenes.c tests/support/volumes.c tests/hash_scenes.c"
+    tests/support/lighting.c tests/support/scenes.c tests/support/volumes.c
+    tests/hash_scenes.c"
 
 # build NAME COMPILER FLAGS...: the hashes go to $out/NAME.txt.
 build()
@@ -88,6 +89,14 @@ for part in TEMPORAL=32 TAA=37 SPATIAL=33 RESOLUTION=39 NOISE=5; do
     try "without_$(echo "${part%=*}" | tr A-Z a-z)" "${part#*=}" gcc -Os \
         -DBRUME_WITH_U8R=0 -DBRUME_WITH_U4R=0 -DBRUME_WITH_TRILINEAR=0 \
         -DBRUME_WITH_UNIFORM=0 -DBRUME_WITH_APRON=0 \
+        "-DBRUME_WITH_${part%=*}=0"
+done
+
+# Parts of lighting, likewise; each with the scenes that do not need it.
+for part in AMBIENT=40 COLOUR=40 CONE=40 CACHE=40 STOCHASTIC=40 SKY=40 TONE=40 \
+    DITHER=40 SHADOW=40; do
+    try "without_$(echo "${part%=*}" | tr A-Z a-z)" "${part#*=}" gcc -Os \
+        -DBRUME_WITH_U8R=0 -DBRUME_WITH_TRILINEAR=0 -DBRUME_WITH_UNIFORM=0 \
         "-DBRUME_WITH_${part%=*}=0"
 done
 

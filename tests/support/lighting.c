@@ -87,11 +87,15 @@ void test_lighting_fill(struct brume_scene *out,
     l->exposure = light->filmic ? ONE / 2 : 0;
     if (light->filmic)
         out->output = BRUME_FILMIC;
+#if BRUME_WITH_CACHE
     if (out->light == BRUME_CACHE &&
         brume_cache_baked(&s_cache[slot], volume) == BRUME_OK) {
         s_cache[slot].blend = light->blend * 256u;
         l->cache = &s_cache[slot];
     }
+#else
+    (void)volume, (void)s_cache;
+#endif
 }
 
 #else
