@@ -147,8 +147,8 @@ void brume_march_span(const struct brume_frame *frame, uint32_t x, uint32_t y,
 #if BRUME_WITH_LIGHTING
     if (f->lit.on) {
         static const uint32_t k_moved[3];
-        static const struct kernel k_lit = {.moved = k_moved};
-        span(f, x, y, n, out, k_lit);
+        const struct kernel lit = {.moved = k_moved};
+        span(f, x, y, n, out, lit);
         return;
     }
 #endif
