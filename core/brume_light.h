@@ -174,9 +174,9 @@ BRUME_INLINE uint32_t transmittance_of(const struct brume_tau *t, uint32_t sum)
 
 /* 1 - exp(-sigma_t * step) of a density, Q0.32. */
 BRUME_INLINE uint32_t opacity(const struct brume_frame *f, uint32_t d,
-                              struct kernel k)
+                              bool narrow)
 {
-    if (is_narrow(k))
+    if (narrow)
         return f->table[d];
     return ~mul_hi_floor(f->table[d >> 8], f->table[256u + (d & 255u)]);
 }

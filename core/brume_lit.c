@@ -201,14 +201,6 @@ static void move_lookup(struct gathered *g, const struct brume_ray *ray,
 }
 #endif
 
-/* 1 - exp(-sigma_t * step) of a density, Q0.32. */
-static uint32_t opacity_of(const struct brume_frame *f, uint32_t d)
-{
-    if (is_narrow_frame(f))
-        return f->table[d];
-    return ~mul_hi_floor(f->table[d >> 8], f->table[256u + (d & 255u)]);
-}
-
 /* A sample's light: `lost` of the ray's transmittance, Q1.31, scatters what
  * `sum` lets through of the sun, and of the sky. */
 static void add_light(const struct brume_frame *f, struct gathered *g,
@@ -252,7 +244,8 @@ void brume_lit_march(const struct brume_frame *frame,
             m = leap(f, line, p[0], p[1], p[2], d, k);
         } else if (d > f->min_density) {
             BRUME_TALLY(lit_samples, 1);
-            uint32_t lost = mul_hi_floor(transmittance, opacity_of(f, d));
+            uint32_t lost =
+                mul_hi_floor(transmittance, opacity(f, d, is_narrow_frame(f)));
             uint32_t sum = sun_sum(f, &ray->light, p, d, &reach, &k);
             add_light(f, &g, ray, p, lost, sum, &k);
             transmittance -= lost;

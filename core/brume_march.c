@@ -62,7 +62,8 @@ BRUME_INLINE void march(const struct brume_frame *f,
         } else if (d > f->min_density) {
             BRUME_TALLY(lit_samples, 1);
             uint32_t sum = light_sum(f, &ray->light, x, y, z, &reach, k);
-            uint32_t lost = mul_hi_floor(transmittance, opacity(f, d, k));
+            uint32_t lost =
+                mul_hi_floor(transmittance, opacity(f, d, is_narrow(k)));
             light += mul_hi_floor(lost, transmittance_of(&f->tau, sum));
             transmittance -= lost;
 #if BRUME_WITH_DEPTH
