@@ -142,6 +142,18 @@ extern "C" {
 #ifndef BRUME_WITH_TONE /* output = filmic; 1.1 KiB */
 #define BRUME_WITH_TONE BRUME_WITH_LIGHTING
 #endif
+#ifndef BRUME_WITH_FOG /* fog by height, spheres and boxes of it */
+#define BRUME_WITH_FOG BRUME_WITH_LIGHTING
+#endif
+#ifndef BRUME_WITH_LAMPS /* point and spot lights */
+#define BRUME_WITH_LAMPS BRUME_WITH_LIGHTING
+#endif
+#ifndef BRUME_WITH_SURFACE /* rays end at a depth buffer; the sun's map */
+#define BRUME_WITH_SURFACE BRUME_WITH_LIGHTING
+#endif
+#ifndef BRUME_WITH_EMISSION /* fire: the asset's second grid */
+#define BRUME_WITH_EMISSION BRUME_WITH_LIGHTING
+#endif
 #ifndef BRUME_WITH_DITHER /* pixels of few bits; needs noise; 0.5 KiB */
 #define BRUME_WITH_DITHER (BRUME_WITH_LIGHTING && BRUME_WITH_NOISE)
 #endif
@@ -163,7 +175,9 @@ extern "C" {
 #if !BRUME_WITH_LIGHTING && \
     (BRUME_WITH_AMBIENT || BRUME_WITH_COLOUR || BRUME_WITH_CONE || \
      BRUME_WITH_CACHE || BRUME_WITH_STOCHASTIC || BRUME_WITH_SKY || \
-     BRUME_WITH_TONE || BRUME_WITH_DITHER || BRUME_WITH_SHADOW)
+     BRUME_WITH_TONE || BRUME_WITH_DITHER || BRUME_WITH_SHADOW || \
+     BRUME_WITH_FOG || BRUME_WITH_LAMPS || BRUME_WITH_SURFACE || \
+     BRUME_WITH_EMISSION)
 #error "brume: set BRUME_WITH_LIGHTING, and what of it is not wanted to 0"
 #endif
 #if BRUME_WITH_COLOUR && !BRUME_WITH_RGB
@@ -203,6 +217,12 @@ extern "C" {
 #ifndef BRUME_MAX_OCTAVES /* of multiple scattering, 1 .. 8 */
 #define BRUME_MAX_OCTAVES 8
 #endif
+#ifndef BRUME_MAX_LAMPS /* of a scene, 1 .. 64; more are refused */
+#define BRUME_MAX_LAMPS 64
+#endif
+#ifndef BRUME_MAX_FOG_SHAPES /* of a scene, 1 .. 255; more are refused */
+#define BRUME_MAX_FOG_SHAPES 16
+#endif
 #ifndef BRUME_MAX_UNIFORM_SAMPLES /* the same, equal distance, 1 .. 4096 */
 #define BRUME_MAX_UNIFORM_SAMPLES 4096
 #endif
@@ -222,6 +242,12 @@ extern "C" {
 #endif
 #if BRUME_MAX_OCTAVES < 1 || BRUME_MAX_OCTAVES > 8
 #error "brume: BRUME_MAX_OCTAVES is 1 .. 8"
+#endif
+#if BRUME_MAX_LAMPS < 1 || BRUME_MAX_LAMPS > 64
+#error "brume: BRUME_MAX_LAMPS is 1 .. 64"
+#endif
+#if BRUME_MAX_FOG_SHAPES < 1 || BRUME_MAX_FOG_SHAPES > 255
+#error "brume: BRUME_MAX_FOG_SHAPES is 1 .. 255"
 #endif
 #if BRUME_SPAN < 1 || BRUME_SPAN > 64
 #error "brume: BRUME_SPAN is 1 .. 64"
@@ -548,6 +574,85 @@ struct brume_cache {
     struct brume_number unit;
 };
 
+/* Fog that scatters as the volume does, beside it in the same march. By
+ * height h = p . zenith (Q16.16 voxels of pool space) its extinction per voxel
+ * is density * exp(-(h - base) / falloff), below base density, and without a
+ * falloff density everywhere; and shapes add theirs. */
+enum brume_fog_kind { BRUME_FOG_SPHERE = 0, BRUME_FOG_BOX = 1 };
+struct brume_fog_shape {
+    uint8_t kind;      /* enum brume_fog_kind */
+    int32_t centre[3]; /* Q16.16 */
+    uint32_t half[3];  /* Q16.16: half the sides of a box along the pool's
+                        * axes; a sphere's radius is the first. 1 .. 16384 */
+    uint32_t softness; /* Q0.16: the share of that within which density falls
+                        * to 0; 0: a hard edge */
+    uint32_t density;  /* Q0.32, extinction per voxel */
+};
+struct brume_fog {
+    uint32_t density; /* Q0.32, extinction per voxel; 0: shapes alone */
+    int32_t base;     /* Q16.16 */
+    uint32_t falloff; /* Q16.16 voxels, >= 1; 0: none */
+    uint32_t far;     /* Q16.16 voxels: where rays end, 1 .. 32766; they end at
+                       * a coordinate of +-32767 too */
+    const struct brume_fog_shape *shapes;
+    uint32_t shape_count; /* 0 .. BRUME_MAX_FOG_SHAPES */
+};
+
+/* A lamp lights what is at distance r, less than its radius, by
+ * colour * (size / max(r, size))^2 * (1 - (r / radius)^4)^2, in units of the
+ * sun's light; a spot that times smoothstep from cos_outer to cos_inner of the
+ * angle to its direction. */
+struct brume_lamp {
+    int32_t position[3];  /* Q16.16 */
+    uint32_t radius;      /* Q16.16 voxels, 1 .. 16384 */
+    uint32_t size;        /* Q16.16 voxels, 1/16 .. radius */
+    uint32_t colour[3];   /* Q16.16, 0 .. 256 */
+    int32_t direction[3]; /* of a spot, any length */
+    /* Q2.30; cos_outer of -1: a point light, whatever the other */
+    int32_t cos_outer, cos_inner;
+    /* Samples at equal distances between lamp and what it lights, jittered
+     * with the light ray's noise; 0: no shadow. 0 .. 64 */
+    uint8_t shadow_samples;
+};
+/* Which lamps reach which part of the view: a word of bits for each of
+ * BRUME_CLUSTER_SIDE^2 tiles of the frame's lattice and BRUME_CLUSTER_SLICES
+ * slices of depth. The caller's memory, filled by brume_begin_frame. There is
+ * a bit for every lamp, so a cluster cannot overflow. */
+#ifndef BRUME_CLUSTER_SIDE /* 1 .. 64 */
+#define BRUME_CLUSTER_SIDE 16
+#endif
+#ifndef BRUME_CLUSTER_SLICES /* 1 .. 32 */
+#define BRUME_CLUSTER_SLICES 8
+#endif
+struct brume_clusters {
+    uint32_t lamps[BRUME_CLUSTER_SLICES][BRUME_CLUSTER_SIDE][BRUME_CLUSTER_SIDE]
+                  [(BRUME_MAX_LAMPS + 31) / 32];
+};
+
+/* Where rays end: for each pixel of the image a distance from the eye along its
+ * ray, as brume_radiance.depth (brume_depth_of); 65535: nowhere. No sample lies
+ * at or behind it. A ray that stands for several pixels takes that of the pixel
+ * at its middle. */
+struct brume_surface {
+    const uint16_t *depth;
+    size_t stride; /* from row to row, in values */
+};
+
+/* What shades the sun besides the volume: a picture of it as the sun sees it,
+ * orthographic. Texels as those of struct brume_shadow_map: (x, y) is at origin
+ * + (x + 1/2) / width * across + (y + 1/2) / height * down, a plane across the
+ * sun's direction (to 1 part in 256); its value is how far below that plane,
+ * away from the sun, it is dark: value * range / 65535, 65535: nowhere. Outside
+ * of the map it is light. */
+struct brume_sun_map {
+    uint16_t width, height;                /* texels, 1 .. BRUME_MAX_SIZE */
+    int32_t origin[3], across[3], down[3]; /* Q16.16 */
+    uint32_t range;                        /* Q16.16, 1 .. 65535 voxels */
+    uint32_t bias; /* Q16.16: what is darkened less deep than that is light */
+    const uint16_t *depth;
+    size_t stride; /* from row to row, in values */
+};
+
 struct brume_lighting {
     /* Multiple scattering (Wrenninge et al., "Oz: The Great and Volumetric",
      * 2013): the sum over i < octaves of b^i phase[i] exp(-a^i tau). */
@@ -577,6 +682,17 @@ struct brume_lighting {
     uint32_t haze; /* Q16.16: distance in voxels, >= 1, at which 1/e of the
                     * volume is left before the background; 0: none */
     bool dither;   /* pixels of fewer than 8 bits */
+
+    const struct brume_fog *fog; /* or NULL */
+    const struct brume_lamp *lamps;
+    uint32_t lamp_count;                 /* 0 .. BRUME_MAX_LAMPS */
+    struct brume_clusters *clusters;     /* when there are lamps */
+    const struct brume_surface *surface; /* or NULL */
+    const struct brume_sun_map *sun_map; /* or NULL */
+    /* Light of the asset's EMIT section, by its code: 256 colours, Q16.16, 0 ..
+     * 16; NULL: none. And extinction per voxel and unit of it, Q32.32. */
+    const uint32_t (*emission_colour)[3];
+    uint64_t emission_scale;
 };
 
 #if BRUME_WITH_CACHE
