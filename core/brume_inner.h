@@ -244,18 +244,30 @@ bool brume_rays_miss(const struct brume_frame *frame, uint32_t x, uint32_t y,
 bool brume_ray_begin(struct brume_ray *ray, const struct brume_frame *frame,
                      uint32_t x, uint32_t y);
 
-/* Which doubling of the light step sample i is in: of cones those of 16 .. 64
- * have two samples, where the error of one is largest (docs/light.md). */
-BRUME_INLINE uint32_t brume_doubling(const struct brume_frame *f, uint32_t i)
-{
 #if BRUME_WITH_CONE
-    if (f->lit.light == BRUME_CONE && i >= 4)
-        return i < 8 ? (i + 4) >> 1 : i - 2;
-#else
-    (void)f;
-#endif
-    return i;
+/* What sample i of a cone's n stands for: the `length` light steps, at least
+ * 2^log2 of them, from before + length on. So with a light ray whose first
+ * sample is 1 + j steps away, that of the segment's part j is length times as
+ * far, and `before` steps. From eight steps on each octave has two segments,
+ * and the last one is twice as long: docs/light.md. */
+struct brume_segment {
+    uint32_t length, log2, before;
+};
+BRUME_INLINE struct brume_segment brume_segment_of(uint32_t i, uint32_t n)
+{
+    struct brume_segment s = {3, 1, 0u - 2u};
+    if (i == 0)
+        return s;
+    s.log2 = (i >> 1) + (i == 1 ? 2u : 1u);
+    s.before = i == 1 ? 0 : (1u + (i & 1u)) << s.log2;
+    if (i > 1 && i == n - 1u) {
+        s.before -= 1u << s.log2;
+        s.log2++;
+    }
+    s.length = 1u << s.log2;
+    return s;
 }
+#endif
 
 /* The light ray of a jitter in Q0.16; frame has its sun and light steps. */
 void brume_light_begin(struct brume_light_ray *light,
@@ -309,7 +321,7 @@ int brume_lit_begin(struct brume_frame *frame, const struct brume_scene *scene);
 
 /* Mips of light = cone: of a segment of 2^m voxels' length that of level m +
  * this. Measured: docs/light.md. */
-#define BRUME_CONE_LEVEL (-2)
+#define BRUME_CONE_LEVEL (-1)
 
 #if BRUME_WITH_AMBIENT
 /* A position along zenith, Q17.14. */

@@ -75,22 +75,9 @@ static inline uint32_t mean_at(const struct brume_frame *f, struct mip *m,
     return q * (q + 1u);
 }
 
-/* Where in its doubling sample i is, along an axis: of [1, 2), [1, 1.5) or
- * [1.5, 2) light steps what the light ray's first sample is of [1, 2). */
-static inline uint32_t segment_way(const struct brume_frame *f,
-                                   const struct brume_light_ray *light,
-                                   int axis, uint32_t i)
-{
-    int32_t way = light->first[axis], step = f->light_line.move[axis];
-    if (i >= 4 && i < 8)
-        way = (way + (i & 1u ? 2 * step : step)) / 2;
-    return (uint32_t)way;
-}
-
 /* Density along the segments that samples stand for, times their length in
- * light steps: [0, 1) with the sample's own density d, [1, 2), [2, 4) and so
- * on, but [16, 64) in four; see docs/light.md. < 2^32: a 16-bit code times
- * 2^15. */
+ * light steps: [0, 1) with the sample's own density d, then those of
+ * brume_segment_of. < 2^27: a 16-bit code times at most 1280. */
 static inline uint32_t sum_cone(const struct brume_frame *f,
                                 const struct brume_light_ray *light,
                                 const uint32_t from[3], uint32_t d,
@@ -102,16 +89,15 @@ static inline uint32_t sum_cone(const struct brume_frame *f,
                       {v->cell_count[0], v->cell_count[1], v->cell_count[2]}};
     uint32_t sum = is_narrow_frame(f) ? d << 8 : d;
     for (uint32_t i = 0; i < light->samples; i++) {
-        bool half = i >= 4 && i < 8;
-        uint32_t octave = brume_doubling(f, i);
-        uint32_t length = half ? octave - 1u : octave;
-        uint32_t x = from[0] + (segment_way(f, light, 0, i) << octave);
-        uint32_t y = from[1] + (segment_way(f, light, 1, i) << octave);
-        uint32_t z = from[2] + (segment_way(f, light, 2, i) << octave);
-        if (x >= f->limit[0] || y >= f->limit[1] || z >= f->limit[2])
+        struct brume_segment s = brume_segment_of(i, f->light_samples);
+        uint32_t p[3];
+        for (int a = 0; a < 3; a++)
+            p[a] = from[a] + (uint32_t)light->first[a] * s.length +
+                   (uint32_t)f->light_line.move[a] * s.before;
+        if (p[0] >= f->limit[0] || p[1] >= f->limit[1] || p[2] >= f->limit[2])
             break;
-        sum += mean_at(f, &mip, x, y, z, f->lit.cone_level + (int32_t)length, k)
-               << length;
+        sum += s.length * mean_at(f, &mip, p[0], p[1], p[2],
+                                  f->lit.cone_level + (int32_t)s.log2, k);
     }
     return sum;
 }

@@ -21,22 +21,15 @@ static struct brume_radiance first[RAYS], second[RAYS];
 
 /// Cone ///
 
-/* The segment of sample i: where its middle is and how long it is, in light
- * steps. */
-static void segment_of(int i, double *middle, double *length)
+/* The segment of sample i of n: where its middle is and how long it is, in
+ * light steps. */
+static void segment_of(int i, int n, double *middle, double *length)
 {
-    double low, high;
-    if (i < 4) {
-        low = exp2(i);
-        high = 2 * low;
-    } else if (i < 8) {
-        const double bound[] = {16, 24, 32, 48, 64};
-        low = bound[i - 4];
-        high = bound[i - 3];
-    } else {
-        low = exp2(i - 2);
-        high = 2 * low;
-    }
+    static const double k_bound[] = {1,  4,  8,  12,  16,  24,  32,  48, 64,
+                                     96, 128, 192, 256, 384, 512, 768, 1024};
+    double low = k_bound[i], high = k_bound[i + 1];
+    if (i >= 2 && i == n - 1)
+        high += high - low;
     *middle = (low + high) / 2;
     *length = high - low;
 }
@@ -53,10 +46,10 @@ struct block {
 /* Density of the mip of a segment at a position: the part of a cube of 2^level
  * voxels that is in the block, coded as docs/SPEC.md says; the block's own at
  * level 0 and below. -1: too near to tell. */
-static double mip_density(const struct block *b, double length,
+static double mip_density(const struct block *b, double length, double step,
                           const double p[3])
 {
-    int level = (int)floor(log2(length)) - 2, q = 0;
+    int level = (int)floor(log2(length)) + (int)floor(log2(step)) - 1, q = 0;
     double side = level > 0 ? ldexp(1, level) : 1, mean = 65280;
     bool full = true;
     for (int a = 0; a < 3; a++) {
@@ -87,7 +80,7 @@ static double cone_way(const struct block *b, const struct brume_scene *s,
     for (int i = 0; i < s->light_samples; i++) {
         double middle, length, p[3];
         bool inside = true;
-        segment_of(i, &middle, &length);
+        segment_of(i, s->light_samples, &middle, &length);
         for (int a = 0; a < 3; a++) {
             double low = tri ? 0 : -0.5;
             double high = 8 * b->cells[a] - (tri ? 1 : 0.5);
@@ -98,7 +91,7 @@ static double cone_way(const struct block *b, const struct brume_scene *s,
         }
         if (!inside)
             break;
-        double d = mip_density(b, length * step, p);
+        double d = mip_density(b, length, step, p);
         if (d < 0)
             return -1;
         way += length * d;

@@ -140,7 +140,7 @@ void test_cache_and_cone()
                                 {"sun", "-90 0"}});
     const march_result m = renderer(even, s).march_pixel(0, 0);
     check_near(m.radiance / (1 - m.transmittance),
-               std::exp(-0.01 * 2 * 0.5 * (1 + 15 + 16 + 32)), 1e-12,
+               std::exp(-0.01 * 2 * 0.5 * (1 + 47 + 32)), 1e-12,
                "cone in a homogeneous medium: what eight segments add up to");
 }
 

@@ -339,10 +339,10 @@ static void test_lighting_limits(void)
         "cone takes no 17 samples");
     file.volume.mips = k_mips; /* whatever is in them */
     bool good = apply_text("light = cone", &file, &s) == 0 &&
-                s.light_samples == 8 && s.light_step == 65536;
+                s.light_samples == 7 && s.light_step == 65536;
     good = apply_text("light = cone\nlight_step = 4", &file, &s) == 0 && good;
-    tap_check(good && s.light_samples == 4,
-              "cone crosses the box of 48 by 8 samples, by 4 of four voxels");
+    tap_check(good && s.light_samples == 3,
+              "cone crosses the box of 48 by 7 samples, by 3 of four voxels");
     free(file.data);
 }
 

@@ -140,6 +140,14 @@ static bool doubles(const struct brume_scene *scene)
     return scene->light == BRUME_LOG || scene->light == BRUME_CONE;
 }
 
+/* How many light steps n samples reach: docs/light.md. */
+static double reach_of(const struct brume_scene *scene, int n)
+{
+    if (scene->light != BRUME_CONE)
+        return ldexp(1, n);
+    return n < 3 ? 4 * n : ldexp(n % 2 ? 4 : 5, (n + 1) / 2);
+}
+
 /* The core's default light is uniform; doubling steps start from a voxel and
  * go on until the distance passes the box's diagonal. */
 static void default_light(const struct scene_settings *s,
@@ -156,11 +164,11 @@ static void default_light(const struct scene_settings *s,
         square += side * side;
     }
     double steps = sqrt(square) * 65536.0 / out->light_step;
-    double n = fmax(1, ceil(log2(steps)));
-    if (out->light == BRUME_CONE && n > 4) /* two octaves have two each */
-        n += 2;
+    int n = 1;
+    while (n < BRUME_MAX_LOG_SAMPLES && reach_of(out, n) < steps)
+        n++;
     if (!s->set[SCENE_LIGHT_SAMPLES])
-        out->light_samples = (uint16_t)fmin(n, BRUME_MAX_LOG_SAMPLES);
+        out->light_samples = (uint16_t)n;
 }
 
 /* What the choice of one key says about others that were not set. */

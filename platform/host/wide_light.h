@@ -62,7 +62,7 @@ LANES_INLINE lanes sum_of_ways(const struct brume_frame *f,
     }
     look_up(&b->lookups, n, s, k);
     for (uint32_t i = 0; i < n; i++)
-        sum += lanes_load(b->lookups.d[i]) << w->shift[i];
+        sum += lanes_load(b->lookups.d[i]) * w->weight[i];
     w->wanted = wanted;
     return sum;
 }

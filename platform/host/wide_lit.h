@@ -85,7 +85,7 @@ LANES_INLINE void put_doubled(struct ways *w, const lanes first[3], uint32_t k)
 {
     for (int i = 0; i < 3; i++)
         lanes_store(w->way[k][i], first[i] << k);
-    w->shift[k] = k;
+    w->weight[k] = 1u << k;
 }
 
 /// Octaves ///
@@ -198,25 +198,20 @@ LANES_INLINE lanes means_at(const struct brume_volume *v, struct mip *m,
     return q * (q + 1u);
 }
 
-/* log2 of the length of segment i of a cone, in light steps. */
-LANES_INLINE uint32_t segment_log2(const struct brume_frame *f, uint32_t i)
+/* The way to a segment's sample. Those that do not fit the word (is_far of
+ * brume_camera.c) are returned: they are out of the pool. */
+LANES_INLINE lanes_mask segment_ways(lanes way[3], const struct brume_frame *f,
+                                     const struct light_lanes *light,
+                                     struct brume_segment s)
 {
-    return brume_doubling(f, i) - (i >= 4 && i < 8 ? 1u : 0);
-}
-
-/* The way to segment i. */
-LANES_INLINE void segment_ways(lanes way[3], const struct brume_frame *f,
-                               const struct light_lanes *light, uint32_t i)
-{
+    lanes high = lanes_of(0);
     for (int a = 0; a < 3; a++) {
-        way[a] = light->first[a];
-        if (i >= 4 && i < 8) {
-            uint32_t step = (uint32_t)f->light_line.move[a];
-            way[a] += i & 1u ? 2u * step : step;
-            way[a] = (lanes)((lanes_signed)way[a] / 2);
-        }
-        way[a] <<= brume_doubling(f, i);
+        uint32_t move = (uint32_t)f->light_line.move[a];
+        way[a] = light->first[a] * s.length + move * s.before;
+        high |= (magnitudes(light->first[a]) >> 4) * s.length +
+                (magnitude(f->light_line.move[a]) >> 4) * s.before;
     }
+    return mask_less(lanes_of((1u << 27) - 1u), high);
 }
 
 /* Segments that are short enough for densities. They fit the word. */
@@ -225,14 +220,14 @@ LANES_INLINE lanes near_segments(const struct brume_frame *f, struct patch *b,
 {
     struct ways *w = &b->lit.ways;
     for (; w->count < light->samples; w->count++) {
+        struct brume_segment s = brume_segment_of(w->count, f->light_samples);
         lanes way[3];
-        uint32_t length = segment_log2(f, w->count);
-        if (f->lit.cone_level + (int32_t)length > 0)
+        if (f->lit.cone_level + (int32_t)s.log2 > 0)
             break;
-        segment_ways(way, f, light, w->count);
+        segment_ways(way, f, light, s);
         for (int i = 0; i < 3; i++)
             lanes_store(w->way[w->count][i], way[i]);
-        w->shift[w->count] = length;
+        w->weight[w->count] = s.length;
     }
     lanes sum = lanes_load(b->lit.d + at) + b->sum_ways(f, b, at);
     return is_narrow_frame(f) ? sum << 8 : sum;
@@ -249,28 +244,24 @@ static lanes cone_sums(const struct brume_frame *f, struct patch *b,
     struct light_lanes light;
     lanes p[3], half = lanes_of(brume_half_voxel(f));
     begin_light(&light, f, &b->queue, at);
-    lanes fit = lanes_leading_zeros(magnitudes(light.first[0]) |
-                                    magnitudes(light.first[1]) |
-                                    magnitudes(light.first[2]));
     begin_ways(&b->lit.ways, n, 0);
     lanes sum = near_segments(f, b, &light, at);
     lanes_mask wanted = b->lit.ways.wanted;
     for (uint32_t i = b->lit.ways.count; i < light.samples; i++) {
+        struct brume_segment s = brume_segment_of(i, f->light_samples);
         lanes way[3];
-        uint32_t length = segment_log2(f, i);
-        segment_ways(way, f, &light, i);
+        lanes_mask far = segment_ways(way, f, &light, s);
         for (int a = 0; a < 3; a++)
             p[a] = lanes_load(b->queue.p[a] + at) + way[a];
         wanted = mask_and(wanted, inside_lanes(f, p[0], p[1], p[2]));
-        wanted =
-            mask_and(wanted, mask_less(lanes_of(brume_doubling(f, i)), fit));
+        wanted = mask_less_those(wanted, far);
         if (!mask_any(wanted))
             break;
         for (int a = 0; a < 3; a++)
             p[a] += half;
         sum +=
-            means_at(v, &mip, p, (uint32_t)(f->lit.cone_level) + length, wanted)
-            << length;
+            s.length *
+            means_at(v, &mip, p, (uint32_t)f->lit.cone_level + s.log2, wanted);
     }
     return sum;
 }
@@ -310,7 +301,7 @@ static lanes uniform_sums(const struct brume_frame *f, struct patch *b,
                     w->way[j][i],
                     lanes_of((uint32_t)f->light.first[i] +
                              (k + j) * (uint32_t)f->light_line.move[i]));
-            w->shift[j] = 0;
+            w->weight[j] = 1;
         }
         sum += b->sum_ways(f, b, at);
     }

@@ -32,7 +32,7 @@ struct queue {
  * times 2^shift, is summed as long as a sample's ways end in the pool. */
 struct ways {
     uint32_t way[LOOKUPS][3][WIDE_LANES];
-    uint32_t shift[LOOKUPS], count;
+    uint32_t weight[LOOKUPS], count;
     lanes own;         /* how many are taken of each sample's */
     lanes_mask wanted; /* samples; afterwards those with all ways in the pool */
 } __attribute__((aligned(64)));

@@ -68,43 +68,41 @@ sun_light::sun_light(const volume &v, const scene &s, const vec3 &sun)
 {
 }
 
-// Sample i's segment: from where, and how long, in light steps. Doubling from
-// [1, 2) on, but of some doublings there are two halves.
+// Sample i's segment: from where to where, in light steps. Two for each octave
+// from eight steps on; the last one is twice as long.
 sun_light::segment sun_light::segment_of(int i) const
 {
-    const cone_rule &rule = scene_.lit.cone;
-    const int in_pairs = i - rule.pairs_from;
-    if (in_pairs < 0 || in_pairs >= 2 * rule.pairs) {
-        const int octave = in_pairs < 0 ? i : i - rule.pairs;
-        return {std::ldexp(1, octave), octave};
-    }
-    const int octave = rule.pairs_from + in_pairs / 2;
-    return {std::ldexp(in_pairs % 2 ? 1.5 : 1, octave), octave - 1};
+    if (i < 2)
+        return i == 0 ? segment{1, 4} : segment{4, 8};
+    const double octave = std::ldexp(8, (i - 2) / 2);
+    const double half = octave / 2;
+    const double start = octave + (i % 2) * half;
+    const bool last = i == scene_.light_samples - 1;
+    return {start, start + (last ? 2 : 1) * half};
 }
 
-// The mean over cubes whose side is a fraction of the segment.
-double sun_light::cone_density(int length_log2, const vec3 &p) const
+// The mean over cubes half as long as the segment, both rounded down to powers
+// of two.
+double sun_light::cone_density(double length, const vec3 &p) const
 {
-    const int step_log2 = std::ilogb(scene_.light_step); // rounded down
-    const int level =
-        std::min(length_log2 + step_log2 + scene_.lit.cone.level, top_);
+    const int step_log2 = std::ilogb(scene_.light_step);
+    const int level = std::min(std::ilogb(length) + step_log2 - 1, top_);
     return level > 0 ? mips_.mean(level, p) : volume_.density(p, scene_.filter);
 }
 
 // Samples are in the middles of their segments, or where the jitter says.
 double sun_light::cone_depth(const vec3 &p, double jitter) const
 {
-    const cone_rule &rule = scene_.lit.cone;
-    const double place = scene_.jitter_light ? jitter : rule.place;
-    double sum = rule.first * volume_.density(p, scene_.filter);
+    const double place = scene_.jitter_light ? jitter : 0.5;
+    double sum = volume_.density(p, scene_.filter);
     for (int i = 0; i < scene_.light_samples; i++) {
         const segment s = segment_of(i);
-        const double length = std::ldexp(1, s.length_log2);
+        const double length = s.end - s.start;
         const vec3 q =
             p + sun_ * (scene_.light_step * (s.start + length * place));
         if (!volume_.contains(q))
             break;
-        sum += length * cone_density(s.length_log2, q);
+        sum += length * cone_density(length, q);
     }
     return sum * scene_.light_step;
 }

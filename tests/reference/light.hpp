@@ -28,11 +28,10 @@ class sun_light
     double uniform_depth(const vec3 &p) const;
     double cone_depth(const vec3 &p, double jitter) const;
     struct segment {
-        double start;
-        int length_log2;
+        double start, end;
     };
     segment segment_of(int i) const;
-    double cone_density(int length_log2, const vec3 &p) const;
+    double cone_density(double length, const vec3 &p) const;
 
     const volume &volume_;
     const scene &scene_;

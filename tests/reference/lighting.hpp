@@ -16,15 +16,6 @@ enum class ambient_kind { none, constant, gradient, cube };
 enum class visibility_kind { open, sampled, baked };
 enum class output_curve { linear, srgb, filmic };
 
-// How `light = cone` reads its segments; see sun_light::cone_depth.
-struct cone_rule {
-    double first = 1;   // weight of the density at the sample itself
-    double place = 0.5; // of a sample in its segment
-    int level = -2;     // log2 of its cube to that of its segment
-    int pairs_from = 4; // this sample is the first of two for a doubling;
-    int pairs = 2;      // so many doublings have two
-};
-
 struct lighting {
     phase_model phase;
     int octaves;
@@ -40,8 +31,6 @@ struct lighting {
     int visibility_samples;
     double visibility_step;   // voxels
     int sky_directions = 256; // over which sampled visibility is averaged
-
-    cone_rule cone;
 
     bool sky;
     vec3 sky_zenith, sky_horizon, sky_ground, sun_disc;

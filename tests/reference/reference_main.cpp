@@ -28,7 +28,6 @@ struct options {
     int threads = 0;               // 0: one per processor
     int directions = 0;            // 0: as the scene has it
     rectangle area = {0, 0, 0, 0}; // empty: the whole picture
-    std::string cone;              // empty: as it is
     bool display = false;
     int bits = 0;                  // 0: not rounded
     bool step_check = false;
@@ -53,10 +52,6 @@ void print_help()
            "  --bits N              as --display, rounded to the nearest code of N bits\n"
            "  --directions N        over which the sky's visibility is averaged"
            " (256)\n"
-           "  --cone W,P,L,F,N      rule of light = cone: weight of the sample's own\n"
-           "                        density, place in a segment, level of mips,\n"
-           "                        and from sample F on N doublings have two\n"
-           "                        samples (1,0.5,-2,4,2)\n"
            "  --view-range A,B,C,D  only pixels A <= x < C, B <= y < D\n"
            "  --step-check          render at half the step too; print how"
            " far apart the two\n"
@@ -114,8 +109,6 @@ options parse_options(const std::vector<std::string> &args)
             o.threads = parse_int(value(), 1, 1024);
         else if (arg == "--directions")
             o.directions = parse_int(value(), 1, 65536);
-        else if (arg == "--cone")
-            o.cone = value();
         else if (arg == "--bits")
             o.bits = parse_int(value(), 1, 16);
         else if (arg == "--display")
@@ -132,15 +125,6 @@ options parse_options(const std::vector<std::string> &args)
     return o;
 }
 
-void set_cone(cone_rule &rule, const std::string &text)
-{
-    char end;
-    if (std::sscanf(text.c_str(), "%lf,%lf,%d,%d,%d%c", &rule.first,
-                    &rule.place, &rule.level, &rule.pairs_from, &rule.pairs,
-                    &end) != 5)
-        throw std::runtime_error("--cone: expected W,P,L,F,N");
-}
-
 scene load_scene(const options &o)
 {
     scene_builder builder;
@@ -151,8 +135,6 @@ scene load_scene(const options &o)
     scene s = builder.finish();
     if (o.directions != 0)
         s.lit.sky_directions = o.directions;
-    if (!o.cone.empty())
-        set_cone(s.lit.cone, o.cone);
     return s;
 }
 
