@@ -62,7 +62,7 @@ const copied &library::copy(const std::string &path, const brume_frame &frame)
         wide_copy_init(&copy.copy, &asset(path).volume, WIDE_COPY_MOST);
     const size_t before = resident();
     const double from = clock_ms(true);
-    wide_copy_prepare(&copy.copy, &frame);
+    wide_copy_prepare(&copy.copy, &frame, nullptr);
     copy.ms += clock_ms(true) - from;
     copy.bytes += resident() - before;
     return copy;
@@ -109,8 +109,9 @@ contender::contender(const std::string &line, library &files)
     std::istringstream in(line);
     job_.part = 1;
     job_.threads = 1;
-    job_.tile_width = 64;
+    job_.tile_width = 16; // as the renderer of the command
     job_.tile_height = 16;
+    job_.order = OURS_HILBERT;
     for (std::string pair; in >> pair;) {
         const size_t equals = pair.find('=');
         if (equals == std::string::npos)

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "scene_file.h"
+#include "tile_order.h"
 
 #define STRIP 16u /* rows */
 #define MAX_THREADS 64
@@ -49,11 +50,6 @@ int ours_frame(struct brume_frame *frame, const struct volume_file *file,
 
 /// Tiles ///
 
-struct tile {
-    uint32_t key;
-    uint16_t x, y; /* in tiles */
-};
-
 static uint32_t morton(uint32_t x, uint32_t y)
 {
     uint32_t key = 0;
@@ -62,34 +58,8 @@ static uint32_t morton(uint32_t x, uint32_t y)
     return key;
 }
 
-/* Place on Hilbert's curve through a square of 2^15 a side. */
-static uint32_t hilbert(uint32_t x, uint32_t y)
-{
-    uint32_t key = 0;
-    for (uint32_t side = 1u << 14; side > 0; side >>= 1) {
-        uint32_t right = (x & side) != 0, down = (y & side) != 0;
-        key += side * side * ((3 * right) ^ down);
-        if (!down) {
-            if (right) {
-                x = ~x;
-                y = ~y;
-            }
-            uint32_t swap = x;
-            x = y;
-            y = swap;
-        }
-    }
-    return key;
-}
-
-static int by_key(const void *a, const void *b)
-{
-    const struct tile *p = a, *q = b;
-    return (p->key > q->key) - (p->key < q->key);
-}
-
 /* Which tiles, in which order; how many. */
-static unsigned list_tiles(const struct ours_job *job, struct tile **list)
+static unsigned list_tiles(const struct ours_job *job, struct tile_place **list)
 {
     unsigned w = job->tile_width, h = job->tile_height, n = 0;
     unsigned across = (job->frame->width + w - 1) / w;
@@ -99,15 +69,15 @@ static unsigned list_tiles(const struct ours_job *job, struct tile **list)
         if (job->part > 1 && y * h / STRIP % job->part != job->part / 2)
             continue;
         for (unsigned x = 0; x < across; x++) {
-            struct tile tile = {n, (uint16_t)x, (uint16_t)y};
+            struct tile_place tile = {n, (uint16_t)x, (uint16_t)y};
             if (job->order != OURS_LINEAR)
-                tile.key =
-                    job->order == OURS_MORTON ? morton(x, y) : hilbert(x, y);
+                tile.key = job->order == OURS_MORTON ? morton(x, y)
+                                                     : tile_order_hilbert(x, y);
             (*list)[n++] = tile;
         }
     }
     if (job->order != OURS_LINEAR)
-        qsort(*list, n, sizeof **list, by_key);
+        tile_order_sort(*list, n);
     return n;
 }
 
@@ -115,12 +85,13 @@ static unsigned list_tiles(const struct ours_job *job, struct tile **list)
 
 struct work {
     const struct ours_job *job;
-    const struct tile *tiles;
+    const struct tile_place *tiles;
     unsigned count;
     atomic_uint next;
 };
 
-static void render_tile(const struct ours_job *job, const struct tile *tile)
+static void render_tile(const struct ours_job *job,
+                        const struct tile_place *tile)
 {
     const struct brume_frame *f = job->frame;
     unsigned x = tile->x * job->tile_width, y = tile->y * job->tile_height;
@@ -146,7 +117,7 @@ static void *work_off(void *arg)
 
 void ours_render(const struct ours_job *job)
 {
-    struct tile *tiles = NULL;
+    struct tile_place *tiles = NULL;
     struct work work = {.job = job};
     pthread_t thread[MAX_THREADS];
     int made = 0;

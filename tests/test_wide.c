@@ -16,6 +16,7 @@
 #include "support/random_light.h"
 #include "support/volumes.h"
 #include "tap.h"
+#include "pool.h"
 #include "wide.h"
 
 #define RANDOM_SCENES 10000
@@ -123,9 +124,50 @@ static void check_scenes(const struct test_volumes *volumes)
         test_scene_frame(&scene, t, v, test_scene_frames(t) - 1);
         if (brume_begin_frame(&frame, v, &scene) != BRUME_OK)
             abort();
-        wide_copy_prepare(copy_of(volumes, v), &frame);
+        wide_copy_prepare(copy_of(volumes, v), &frame, NULL);
         check_scene(t, copy_of(volumes, v), &frame);
     }
+}
+
+/// Copies ///
+
+/* Are the copies that both have the same? */
+static bool equal_copies(const struct wide_copy *a, const struct wide_copy *b)
+{
+    return (a->bytes == NULL ||
+            memcmp(a->bytes, b->bytes, a->bytes_size) == 0) &&
+           (a->halves == NULL ||
+            memcmp(a->halves, b->halves, 2 * a->halves_size) == 0) &&
+           (a->octets == NULL ||
+            memcmp(a->octets, b->octets, 8 * a->octets_size) == 0);
+}
+
+/* Layers that threads make at the same time do not meet. */
+static void check_threads(const struct test_volumes *volumes)
+{
+    struct pool *pool = pool_new(3);
+    bool good = pool != NULL;
+    for (int i = 0; i < volumes->count; i++) {
+        const struct brume_volume *v = &volumes->item[i].volume;
+        struct wide_copy one, three;
+        struct brume_scene scene;
+        struct brume_frame frame;
+        brume_scene_default(&scene, v);
+        wide_copy_init(&one, v, WIDE_COPY_MOST);
+        wide_copy_init(&three, v, WIDE_COPY_MOST);
+        for (int filter = 0; filter < 2; filter++) {
+            scene.filter = (uint8_t)filter;
+            if (brume_begin_frame(&frame, v, &scene) != BRUME_OK)
+                abort();
+            wide_copy_prepare(&one, &frame, NULL);
+            wide_copy_prepare(&three, &frame, pool);
+        }
+        good = good && equal_copies(&one, &three);
+        wide_copy_free(&one);
+        wide_copy_free(&three);
+    }
+    pool_free(pool);
+    tap_check(good, "copies by three threads are those by one");
 }
 
 /// Rectangles ///
@@ -142,7 +184,7 @@ static void check_rectangles(const struct test_volumes *volumes)
     test_scene_fill(&scene, t, v);
     if (brume_begin_frame(&frame, v, &scene) != BRUME_OK)
         abort();
-    wide_copy_prepare(copy_of(volumes, v), &frame);
+    wide_copy_prepare(copy_of(volumes, v), &frame, NULL);
     for (int k = 0; k < kernel_count; k++) {
         bool good = true, ones = true;
         for (size_t i = 0; i < sizeof k_rect / sizeof k_rect[0]; i++) {
@@ -330,7 +372,7 @@ static void check_random(const struct test_volumes *volumes)
             continue;
         drawn++;
         random_rect(rect, &frame);
-        wide_copy_prepare(&copies[which], &frame);
+        wide_copy_prepare(&copies[which], &frame, NULL);
         for (int k = 0; k < kernel_count; k++) {
             bool direct = same(kernels[k], NULL, &frame, rect, 999, 999);
             bool copied =
@@ -379,8 +421,8 @@ static void check_few(void)
         scene.filter = (uint8_t)filter;
         if (brume_begin_frame(&frame, &volume, &scene) != BRUME_OK)
             abort();
-        wide_copy_prepare(&c, &frame);
-        wide_copy_prepare(&no_room, &frame);
+        wide_copy_prepare(&c, &frame, NULL);
+        wide_copy_prepare(&no_room, &frame, NULL);
         for (int k = 0; k < kernel_count; k++)
             tap_check(same(kernels[k], &c, &frame, whole, 999, 999) &&
                           same(kernels[k], &no_room, &frame, whole, 999, 999),
@@ -416,6 +458,7 @@ int main(int argc, char **argv)
         wide_copy_init(&copies[i], &volumes.item[i].volume, WIDE_COPY_MOST);
     find_kernels();
     check_names();
+    check_threads(&volumes);
     check_rectangles(&volumes);
     check_refusals(&volumes);
     check_few();

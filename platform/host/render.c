@@ -6,10 +6,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rays of a task that marches: few enough to share out, many enough for a
- * kernel of 16 lanes. */
-#define TILE_WIDTH 64
+#include "tile_order.h"
+
+/* Rays of a task that marches: few enough to share out and to look up the same
+ * bricks, many enough for a kernel of 16 lanes. */
+#define TILE_WIDTH 16
 #define TILE_HEIGHT 16
+/* Rays of a task that reprojects. */
+#define RESOLVE_WIDTH 64
+#define RESOLVE_HEIGHT 16
 /* Pixels of a task that filters, which reads up to 7 more on each side. */
 #define SHOW_WIDTH 256
 #define SHOW_HEIGHT 64
@@ -31,8 +36,10 @@ struct renderer {
     struct brume_frame frame;
     struct brume_state *state;
     size_t state_size;
-    struct scratch *scratch; /* one for each thread */
-    int32_t anchor[3];       /* of the pool, voxels */
+    struct scratch *scratch;  /* one for each thread */
+    int32_t anchor[3];        /* of the pool, voxels */
+    struct tile_place *order; /* of tiles that march, or NULL: row by row */
+    unsigned order_size[2];   /* tiles across and down that it is for */
 
     unsigned bar_frames, bar_frame; /* of the progress bar: all, done */
     unsigned bar_tiles, bar_shown;
@@ -45,8 +52,9 @@ struct sweep {
     const struct brume_frame *frame;
     const struct render_target *target;
     unsigned size[2], tile[2], across;
-    bool plain;       /* rays go straight to pixels */
-    atomic_int error; /* the first one */
+    const struct tile_place *order; /* or NULL: row by row */
+    bool plain;                     /* rays go straight to pixels */
+    atomic_int error;               /* the first one */
 };
 
 struct tile {
@@ -100,8 +108,13 @@ static unsigned min_unsigned(unsigned a, unsigned b)
 
 static struct tile tile_at(const struct sweep *s, unsigned number)
 {
-    struct tile t = {number % s->across * s->tile[0],
-                     number / s->across * s->tile[1], 0, 0};
+    struct tile t = {number % s->across, number / s->across, 0, 0};
+    if (s->order != NULL) {
+        t.x = s->order[number].x;
+        t.y = s->order[number].y;
+    }
+    t.x *= s->tile[0];
+    t.y *= s->tile[1];
     t.w = min_unsigned(s->size[0] - t.x, s->tile[0]);
     t.h = min_unsigned(s->size[1] - t.y, s->tile[1]);
     return t;
@@ -180,20 +193,37 @@ static void show_tile(void *arg, unsigned task, unsigned worker)
     profile_add(p, PASS_SHOW, now);
 }
 
+/* Makes the order of that many tiles, unless it is there. */
+static const struct tile_place *order_of(struct renderer *r, unsigned across,
+                                         unsigned down)
+{
+    if (r->order == NULL || r->order_size[0] != across ||
+        r->order_size[1] != down) {
+        free(r->order);
+        r->order = tile_order_new(across, down);
+        r->order_size[0] = across;
+        r->order_size[1] = down;
+    }
+    return r->order;
+}
+
 static void sweep_over(struct sweep *s, const unsigned size[2],
                        const unsigned tile[2], pool_task *task)
 {
+    struct renderer *r = s->renderer;
     for (int i = 0; i < 2; i++) {
         s->size[i] = size[i];
         s->tile[i] = tile[i];
     }
     s->across = (size[0] + tile[0] - 1) / tile[0];
-    unsigned tiles = s->across * ((size[1] + tile[1] - 1) / tile[1]);
+    unsigned down = (size[1] + tile[1] - 1) / tile[1];
+    s->order = NULL;
     if (task == march_tile) {
-        s->renderer->bar_tiles = tiles;
-        atomic_store(&s->renderer->bar_done, 0);
+        s->order = order_of(r, s->across, down);
+        r->bar_tiles = s->across * down;
+        atomic_store(&r->bar_done, 0);
     }
-    pool_run(s->renderer->pool, task, s, tiles);
+    pool_run(r->pool, task, s, s->across * down);
 }
 
 /// Memory ///
@@ -221,6 +251,7 @@ void renderer_free(struct renderer *renderer)
         free(renderer->scratch[i].work);
     pool_free(renderer->pool);
     wide_copy_free(&renderer->copy);
+    free(renderer->order);
     free(renderer->scratch);
     free(renderer->state);
     free(renderer);
@@ -299,6 +330,7 @@ static bool has_work(struct renderer *r)
 /// Frames ///
 
 static const unsigned k_tile[2] = {TILE_WIDTH, TILE_HEIGHT};
+static const unsigned k_resolve[2] = {RESOLVE_WIDTH, RESOLVE_HEIGHT};
 static const unsigned k_show[2] = {SHOW_WIDTH, SHOW_HEIGHT};
 
 /* Does a frame need rays alone? */
@@ -322,7 +354,7 @@ static int draw_passes(struct renderer *r, const struct brume_frame *frame,
     atomic_init(&s.error, BRUME_OK);
     sweep_over(&s, lattice, k_tile, march_tile);
     if (resolve)
-        sweep_over(&s, grid, k_tile, resolve_tile);
+        sweep_over(&s, grid, k_resolve, resolve_tile);
     if (!plain)
         sweep_over(&s, image, k_show, show_tile);
     r->bar_frame++;
@@ -360,7 +392,7 @@ int renderer_draw(struct renderer *renderer, const struct brume_scene *scene,
     }
     now = profile_add(r->profile, PASS_BEGIN, now);
     if (!error)
-        wide_copy_prepare(&r->copy, &r->frame);
+        wide_copy_prepare(&r->copy, &r->frame, r->pool);
     profile_add(r->profile, PASS_COPY, now);
     if (!error)
         error = draw_passes(r, &r->frame, plain, taa, target);

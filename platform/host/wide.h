@@ -5,7 +5,7 @@
  *
  *     struct wide_copy copy;
  *     wide_copy_init(&copy, &volume, WIDE_COPY_MOST);
- *     wide_copy_prepare(&copy, &frame);         once a frame
+ *     wide_copy_prepare(&copy, &frame, pool);   once a frame
  *     wide_march_copy_rect(kernel, &copy, &frame, ...);     any threads
  *     wide_copy_free(&copy);
  */
@@ -13,6 +13,8 @@
 #define BRUME_HOST_WIDE_H
 
 #include "brume.h"
+
+struct pool;
 
 enum wide_kernel {
     WIDE_SCALAR = 0, /* the core's */
@@ -70,8 +72,10 @@ struct wide_copy {
 void wide_copy_init(struct wide_copy *copy, const struct brume_volume *volume,
                     size_t most);
 
-/* Makes what the frame's lookup reads, when it is not there and fits. */
-void wide_copy_prepare(struct wide_copy *copy, const struct brume_frame *frame);
+/* Makes what the frame's lookup reads, when it is not there and fits. `pool` is
+ * whose threads do it, or NULL. */
+void wide_copy_prepare(struct wide_copy *copy, const struct brume_frame *frame,
+                       struct pool *pool);
 
 /* As wide_march_rect, by the copies, if what is needed was prepared. */
 int wide_march_copy_rect(enum wide_kernel kernel, const struct wide_copy *copy,

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "brume_lookup.h"
+#include "pool.h"
 
 #define PAGE 4096u
 
@@ -64,20 +65,40 @@ static uint32_t code_of(const struct brume_volume *v, uint32_t brick,
     return code_at(v, brick, i, k);
 }
 
-/* What is done for each occupied cell. */
+/* What is done for each occupied cell: it may write what belongs to that cell
+ * and to those below it by one. */
 typedef void each_brick(struct wide_copy *c, const uint32_t cell[3],
                         uint32_t brick, void *to);
 
-static void for_bricks(struct wide_copy *c, each_brick *act, void *to)
+struct brick_job {
+    struct wide_copy *copy;
+    each_brick *act;
+    void *to;
+    uint32_t first; /* of the layers along z: every other one */
+};
+
+static void do_layer(void *arg, unsigned task, unsigned worker)
 {
-    const struct brume_volume *v = c->volume;
-    uint64_t n = 0;
-    uint32_t cell[3];
-    for (cell[2] = 0; cell[2] < v->cell_count[2]; cell[2]++)
-        for (cell[1] = 0; cell[1] < v->cell_count[1]; cell[1]++)
-            for (cell[0] = 0; cell[0] < v->cell_count[0]; cell[0]++, n++)
-                if (brick_of(v, n) >= 0)
-                    act(c, cell, (uint32_t)brick_of(v, n), to);
+    const struct brick_job *job = arg;
+    const struct brume_volume *v = job->copy->volume;
+    uint32_t cell[3] = {0, 0, job->first + 2u * task};
+    uint64_t n = (uint64_t)cell[2] * v->cell_count[1] * v->cell_count[0];
+    (void)worker;
+    for (; cell[1] < v->cell_count[1]; cell[1]++)
+        for (cell[0] = 0; cell[0] < v->cell_count[0]; cell[0]++, n++)
+            if (brick_of(v, n) >= 0)
+                job->act(job->copy, cell, (uint32_t)brick_of(v, n), job->to);
+}
+
+/* Of layers that are worked on at a time, none touches another's. */
+static void for_bricks(struct wide_copy *c, struct pool *pool, each_brick *act,
+                       void *to)
+{
+    struct brick_job job = {c, act, to, 0};
+    uint32_t layers = c->volume->cell_count[2];
+    pool_run(pool, do_layer, &job, (layers + 1u) / 2u);
+    job.first = 1;
+    pool_run(pool, do_layer, &job, layers / 2u);
 }
 
 /* Number of a cell's first voxel in pages of 16^3; rows are 16 further, slices
@@ -115,13 +136,13 @@ static void copy_bytes(struct wide_copy *c, const uint32_t cell[3],
             memcpy(page + (z << 8 | y << 4), from + (z * side + y) * side, 8);
 }
 
-static void make_bytes(struct wide_copy *c)
+static void make_bytes(struct wide_copy *c, struct pool *pool)
 {
     uint64_t size = voxels_in_pages(c->volume);
     uint8_t *to = reserve(c, 0, size, 1);
     if (to == NULL)
         return;
-    for_bricks(c, copy_bytes, to);
+    for_bricks(c, pool, copy_bytes, to);
     c->bytes = to;
     c->bytes_size = (size_t)size;
 }
@@ -142,13 +163,13 @@ static void copy_halves(struct wide_copy *c, const uint32_t cell[3],
     }
 }
 
-static void make_halves(struct wide_copy *c)
+static void make_halves(struct wide_copy *c, struct pool *pool)
 {
     uint64_t n = voxels_in_pages(c->volume);
     uint16_t *to = reserve(c, 1, 2 * n, 2);
     if (to == NULL)
         return;
-    for_bricks(c, copy_halves, to);
+    for_bricks(c, pool, copy_halves, to);
     c->halves = to;
     c->halves_size = (size_t)n;
 }
@@ -213,7 +234,7 @@ static uint64_t cells_of(const struct brume_volume *v)
     return (uint64_t)v->cell_count[0] * v->cell_count[1] * v->cell_count[2];
 }
 
-static void make_octets(struct wide_copy *c)
+static void make_octets(struct wide_copy *c, struct pool *pool)
 {
     const struct brume_volume *v = c->volume;
     uint64_t n = cells_of(v) << 9;
@@ -221,7 +242,7 @@ static void make_octets(struct wide_copy *c)
     uint64_t *to = reserve(c, 2, 8 * n, 8);
     if (to == NULL)
         return;
-    for_bricks(c, inside ? copy_octets_inside : copy_octets, to);
+    for_bricks(c, pool, inside ? copy_octets_inside : copy_octets, to);
     c->octets = to;
     c->octets_size = (size_t)n;
 }
@@ -239,18 +260,19 @@ static void make_ranges(struct wide_copy *c)
     c->ranges = to;
 }
 
-void wide_copy_prepare(struct wide_copy *copy, const struct brume_frame *frame)
+void wide_copy_prepare(struct wide_copy *copy, const struct brume_frame *frame,
+                       struct pool *pool)
 {
     struct wide_copy *c = copy;
     const struct brume_volume *v = c->volume;
     bool u8 = v->format == BRUME_U8;
     bool trilinear = frame->kernel >> 2 & 1, clamp = frame->kernel & 1;
     if (!trilinear && u8 && c->bytes == NULL)
-        make_bytes(c);
+        make_bytes(c, pool);
     if ((trilinear ? clamp || (!u8 && v->side == 8) : !u8) && c->halves == NULL)
-        make_halves(c);
+        make_halves(c, pool);
     if (trilinear && !clamp && c->octets == NULL)
-        make_octets(c);
+        make_octets(c, pool);
     if (trilinear && !clamp && !u8 && c->ranges == NULL)
         make_ranges(c);
 }
