@@ -56,11 +56,9 @@ bake_from() # FILE FORMAT OUT.brume
 
 bake_cloud() # TYPE SIZE FORMAT OUT.brume
 {
-    "$BUILD/brume-cloud" --type "$1" --size "$2" -o "$4.vdb" &&
-        bake_from "$4.vdb" "$3" "$4"
-    made=$?
-    rm -f "$4.vdb"
-    return $made
+    made_vdb=$(dirname "$4")/made.vdb
+    "$BUILD/brume-cloud" --type "$1" --size "$2" -o "$made_vdb" &&
+        bake_from "$made_vdb" "$3" "$4"
 }
 
 # volume NAME: the baked file's path on stdout; voxels.float is beside it.
@@ -96,6 +94,16 @@ voxels()
 {
     volume "$1" >/dev/null || return
     echo "$(dirname "$(volume "$1")")/voxels.float"
+}
+
+# vdb NAME: and the file that it was baked from, for peers.
+vdb()
+{
+    case $1 in
+    disney) echo "$DATA/wdas_cloud_sixteenth.vdb" ;;
+    smoke) echo "$DATA/openvdb_smoke1.vdb" ;;
+    *) echo "$(dirname "$(volume "$1")")/made.vdb" ;;
+    esac
 }
 
 ## Noises ##
@@ -181,4 +189,24 @@ mean_picture()
     once "$mean_at" sequence "$mean_volume" "$mean_scene" $(sets "$@") \
         --set noise=white --frames "0:$((mean_frames - 1))" --mean &&
         echo "$mean_at"
+}
+
+## Time ##
+
+# bench VOLUME SCENE RUNS: host times, of units that are marked `timed`. Lines
+# NAME RENDERER [KEY=VALUE]... on stdin, of brume-bench's renderers, drawn in
+# turns; rows of brume-bench on stdout, whose `ratio` is the time of the first
+# line, `nano nano-tuned ...`, over each one's.
+bench()
+{
+    bench_volume=$(volume "$1") || return
+    bench_scene=$(sed 's/#.*//; /^ *$/d; s/ *= */=/; s/ *$//; s/ /,/g' \
+        "lab/scenes/$2.scene" | tr '\n' ' ')
+    bench_scene="$bench_scene size=$lab_size output=linear"
+    awk -v rest="vdb=$(vdb "$1") asset=$bench_volume $bench_scene" '{
+        settings = ""
+        for (i = 3; i <= NF; i++)
+            settings = settings " " $i
+        print "name=" $1, "render=" $2, rest settings
+    }' | "$BUILD/brume-bench" "$3"
 }

@@ -18,6 +18,17 @@
 #
 # Rows are in $BUILD/lab/rows/NAME.csv (quick: $BUILD/lab/quick/rows); the first
 # line has the hash of all that they come from.
+#
+# An experiment X is a line of lab/experiments/order and these files:
+#
+#   lab/experiments/X.sh  X_list: names of its units without X/, and `timed`
+#                         behind a name; X_run NAME: rows of one, a CSV with its
+#                         head, on stdout, status 3 to skip it; and below a line
+#                         `## Claims ##` X_check: claims (claims.sh); if need be
+#                         X_table NAME: the table of its rows, and X_derive:
+#                         tables out of tables
+#   lab/charts/X*.gp      gnuplot, from tables in dir to dir/*.svg
+#   lab/page/X.md         its section: page.awk has the placeholders
 set -eu
 : "${BUILD:=build}" "${DATA:=../shared/data}" "${QUICK:=}"
 : "${JOBS:=$(nproc 2>/dev/null || echo 2)}"
@@ -28,7 +39,7 @@ out=docs/lab
 [ -z "$QUICK" ] || out=$lab/tables
 shard=1/1
 
-usage() { sed -n '3,21s/^# \{0,1\}//p' "$0"; }
+usage() { sed -n '3,33s/^# \{0,1\}//p' "$0"; }
 
 die()
 {
@@ -54,12 +65,13 @@ inputs=$LAB_INPUTS made_hash=$LAB_MADE reference_hash=$LAB_REFERENCE
 . lab/lib.sh
 . lab/claims.sh
 
-experiments=$(for file in lab/experiments/*.sh; do
-    basename "$file" .sh
-done)
-for experiment in $experiments; do
+# In the order of the page.
+experiments=$(cat lab/experiments/order)
+for file in lab/experiments/*.sh; do
+    grep -qx "$(basename "$file" .sh)" lab/experiments/order ||
+        die "$file is not in lab/experiments/order"
     # shellcheck disable=SC1090
-    . "lab/experiments/$experiment.sh"
+    . "$file"
 done
 
 ## Units ##
@@ -188,8 +200,7 @@ collect()
     for table in lab/published/*.csv; do
         cp "$table" "$out/published_$(basename "$table")"
     done
-    printf "name,value\nsize,%s\nmc_size,%s\n" "$lab_size" "$mc_size" \
-        >"$out/settings.csv"
+    printf "name,value\nsize,%s\n" "$lab_size" >"$out/settings.csv"
     for experiment in $experiments; do
         ! command -v "${experiment}_derive" >/dev/null ||
             "${experiment}_derive"
