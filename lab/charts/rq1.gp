@@ -9,9 +9,10 @@ set logscale y
 set xrange [0:31]
 set xlabel "frame"
 csv = dir . "/rq1.csv"
-noises = "none white blue ign ign-jimenez stbn fast fast-product fast-separate"
-colours = "#888888 #000000 #1f77b4 #d62728 #ff9896 #2ca02c #9467bd #8c564b " . \
-    "#e377c2"
+noises = "none white blue ign ign-jimenez stbn fast fast-64 fast-product " . \
+    "fast-separate"
+colours = "#888888 #000000 #1f77b4 #d62728 #ff9896 #2ca02c #9467bd #17becf " . \
+    "#8c564b #e377c2"
 
 # Columns: scene noise frame reference region rmse mean spread ...
 row(scene, noise, reference, region) = strcol(1) eq scene && \
