@@ -54,7 +54,7 @@ REFERENCES = reference spec-dump monte-carlo octave-fit
 TEST_PROGRAMS = $(TESTS) $(REFERENCES:%=$(BUILD)/brume-%) \
 	$(BUILD)/tests/hash_scenes $(BUILD)/tests/section_dump \
 	$(BUILD)/tests/make_vdbs $(BUILD)/tests/noise_march \
-	$(BUILD)/brume-stability
+	$(BUILD)/brume-stability $(BUILD)/brume-lab
 
 .PHONY: all demo test golden targets targets-update targets-deps deps \
 	test-deps install clean help
@@ -67,6 +67,7 @@ demo: deps ## make a cloud (or take VDB=file), bake it, draw pictures of it
 	@$(MAKE) --no-print-directory -j$(JOBS) all
 	@BUILD=$(BUILD) VDB="$(VDB)" sh platform/host/demo.sh
 include bench/bench.mk
+include lab/lab.mk
 endif
 
 test: test-deps ## build and run every test of this machine
@@ -105,7 +106,7 @@ clean: ## remove what was built
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1|/p' Makefile platform/targets.mk \
-		bench/bench.mk | \
+		bench/bench.mk lab/lab.mk | \
 		awk -F'|' '{ printf "%-21s %s\n", $$1, $$2 }'
 
 # Programs

@@ -245,12 +245,12 @@ picture make_picture(const scene &s, const renderer &camera,
     return out;
 }
 
-// Of the light, without the background.
-picture make_errors(const path_sums &sums)
+// Of the light, without the background; the sun's colour is left out.
+picture make_errors(const path_sums &sums, double exposure)
 {
     picture out{sums.width, sums.height, 1, {}};
     for (size_t i = 0; i < sums.sum.size(); i += 2)
-        out.values.push_back(sums.standard_error(i));
+        out.values.push_back(exposure * sums.standard_error(i));
     return out;
 }
 
@@ -275,9 +275,10 @@ void run(const options &o)
         throw std::runtime_error(o.sums + ": holds more passes already");
     trace_all(tracer, camera, o, key, sums);
 
-    write_pfm(o.output, make_picture(s, camera, sums,
-                                     settings.source != light_source::sun));
-    const picture errors = make_errors(sums);
+    const bool everywhere = settings.source != light_source::sun;
+    write_pfm(o.output, make_picture(s, camera, sums, everywhere));
+    const picture errors =
+        make_errors(sums, everywhere ? 1 : s.lit.exposure);
     if (!o.error.empty())
         write_pfm(o.error, errors);
     double squares = 0;
