@@ -862,7 +862,9 @@ struct brume_lit {
 };
 #endif
 
-/* All that is computed once a frame. For users: grid and lattice. */
+/* All that is computed once a frame. For users: grid and lattice; and
+ * background, which may be changed between rectangles, as far up as 1, with
+ * lighting as BRUME_MAX_LIGHT: so a picture lies behind, pixel by pixel. */
 struct brume_frame {
     const struct brume_volume *volume;
     /* Loss of transmittance per sample, Q0.32, by 8-bit density; or two
