@@ -321,9 +321,9 @@ int mesh_add_ground(struct mesh *mesh, const struct mesh_ground *ground,
     const struct grey16 *h = ground->heights;
     const double *a = ground->area;
     int w = h == NULL ? 0 : h->width, d = h == NULL ? 0 : h->height;
-    uint32_t base = mesh->vertices, before = mesh->triangles;
+    uint32_t base = mesh->vertices;
     uint32_t across = (uint32_t)w + 2;
-    const char *bad = NULL;
+    const char *bad = a[0] == a[2] || a[1] == a[3] ? "no area" : NULL;
     for (int y = 0; y < d + 2; y++)
         for (int x = 0; x < w + 2 && bad == NULL; x++) {
             const double p[3] = {a[0] + (a[2] - a[0]) * place_of(x, w),
@@ -338,7 +338,5 @@ int mesh_add_ground(struct mesh *mesh, const struct mesh_ground *ground,
             if (bad == NULL)
                 bad = add_triangle(mesh, v + 1, below, below + 1, thing);
         }
-    if (bad == NULL && mesh->triangles == before)
-        bad = "no area";
     return bad == NULL ? 0 : image_error(err, err_size, "ground: %s", bad);
 }
