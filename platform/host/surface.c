@@ -116,7 +116,7 @@ void surface_ray(const struct surface *surface, double u, double v,
 
 uint16_t surface_depth_code(double voxels)
 {
-    const uint32_t farthest = 0xffdfffffu; /* of code 65534 */
+    const uint32_t farthest = 0xffefffffu; /* of code 65534 */
     double q16 = floor(voxels * 65536.0);
     uint32_t t = q16 >= farthest ? farthest : q16 > 0 ? (uint32_t)q16 : 0;
     unsigned high = 0;
