@@ -601,32 +601,70 @@ struct brume_fog {
 /* A lamp lights what is at distance r, less than its radius, by
  * colour * (size / max(r, size))^2 * (1 - (r / radius)^4)^2, in units of the
  * sun's light; a spot that times smoothstep from cos_outer to cos_inner of the
- * angle to its direction. */
+ * angle to its direction: 0 at cos_outer and outside, 1 within cos_inner. */
 struct brume_lamp {
-    int32_t position[3];  /* Q16.16 */
+    int32_t position[3];  /* Q16.16, within BRUME_MAX_COORDINATE */
     uint32_t radius;      /* Q16.16 voxels, 1 .. 16384 */
     uint32_t size;        /* Q16.16 voxels, 1/16 .. radius */
     uint32_t colour[3];   /* Q16.16, 0 .. 256 */
-    int32_t direction[3]; /* of a spot, any length */
-    /* Q2.30; cos_outer of -1: a point light, whatever the other */
+    int32_t direction[3]; /* of a spot, any length > 0 */
+    /* Q2.30, -1 .. 1, cos_outer <= cos_inner; cos_outer of -1: a point light,
+     * whatever cos_inner and direction */
     int32_t cos_outer, cos_inner;
     /* Samples at equal distances between lamp and what it lights, jittered
      * with the light ray's noise; 0: no shadow. 0 .. 64 */
     uint8_t shadow_samples;
 };
+
+/* What a frame makes of a lamp. No user-visible fields. */
+struct brume_lit_lamp {
+    uint32_t position[3]; /* with the frame's bias, Q16.16, plus 2^31 */
+    uint32_t radius;      /* Q16.16 */
+    uint32_t colour[3];   /* Q12.20: albedo and exposure applied */
+    uint32_t size;        /* mantissa of its square, Q0.32, >= 1/2 */
+    uint32_t per_radius;  /* mantissa of 2^-64 / its square, 2^29 .. 2^31 */
+    int32_t direction[3]; /* of a spot, Q2.30, unit */
+    int32_t cos_outer, cos_inner;
+    uint32_t slope;      /* mantissa of 1 / (cos_inner - cos_outer) */
+    uint32_t per_sample; /* Q0.32: 1 / shadow_samples */
+    uint8_t size_shift, radius_shift, slope_shift;
+    uint8_t shadow_samples;
+    bool spot;
+    /* Of the clusters: beyond `reach`, Q16.16, nothing counts as within the
+     * radius; depth as struct brume_clusters.end; tiles, both ends included;
+     * `before` is of use while those are found. */
+    uint32_t reach, depth;
+    uint8_t from[2], to[2];
+    bool before;
+};
+
 /* Which lamps reach which part of the view: a word of bits for each of
- * BRUME_CLUSTER_SIDE^2 tiles of the frame's lattice and BRUME_CLUSTER_SLICES
- * slices of depth. The caller's memory, filled by brume_begin_frame. There is
- * a bit for every lamp, so a cluster cannot overflow. */
+ * BRUME_CLUSTER_SIDE^2 tiles of the frame's grid of rays and
+ * BRUME_CLUSTER_SLICES slices of depth. The caller's memory, 24 KB with the
+ * limits below; brume_begin_frame fills it for one frame, so it stays as it is
+ * until that frame's last ray. There is a bit for every lamp, so a cluster
+ * cannot overflow. */
 #ifndef BRUME_CLUSTER_SIDE /* 1 .. 64 */
 #define BRUME_CLUSTER_SIDE 16
 #endif
 #ifndef BRUME_CLUSTER_SLICES /* 1 .. 32 */
 #define BRUME_CLUSTER_SLICES 8
 #endif
+#if BRUME_CLUSTER_SIDE < 1 || BRUME_CLUSTER_SIDE > 64
+#error "brume: BRUME_CLUSTER_SIDE is 1 .. 64"
+#endif
+#if BRUME_CLUSTER_SLICES < 1 || BRUME_CLUSTER_SLICES > 32
+#error "brume: BRUME_CLUSTER_SLICES is 1 .. 32"
+#endif
+#define BRUME_LAMP_WORDS ((BRUME_MAX_LAMPS + 31) / 32)
 struct brume_clusters {
+    /* lamp n is in word n / 32, from its highest bit down */
     uint32_t lamps[BRUME_CLUSTER_SLICES][BRUME_CLUSTER_SIDE][BRUME_CLUSTER_SIDE]
-                  [(BRUME_MAX_LAMPS + 31) / 32];
+                  [BRUME_LAMP_WORDS];
+    /* Where slices end, Q16.16, by the largest of the three coordinates'
+     * distances from the eye */
+    uint32_t end[BRUME_CLUSTER_SLICES];
+    struct brume_lit_lamp lamp[BRUME_MAX_LAMPS];
 };
 
 /* Where rays end: for each pixel of the image a distance from the eye along its
@@ -685,7 +723,8 @@ struct brume_lighting {
 
     const struct brume_fog *fog; /* or NULL */
     const struct brume_lamp *lamps;
-    uint32_t lamp_count;                 /* 0 .. BRUME_MAX_LAMPS */
+    /* 0 .. BRUME_MAX_LAMPS; more get BRUME_ERR_SCENE, none is left out */
+    uint32_t lamp_count;
     struct brume_clusters *clusters;     /* when there are lamps */
     const struct brume_surface *surface; /* or NULL */
     const struct brume_sun_map *sun_map; /* or NULL */
@@ -849,6 +888,12 @@ struct brume_lit {
 #endif
 #if BRUME_WITH_AMBIENT || BRUME_WITH_SKY
     int32_t zenith[3]; /* Q2.30, unit */
+#endif
+#if BRUME_WITH_LAMPS
+    const struct brume_clusters *clusters; /* NULL: no lamp in sight */
+    uint32_t tile[2]; /* tiles per ray of the grid, Q16.16 */
+    bool lamp_shadows;
+    struct brume_number lamp_depth; /* optical depth of a code and voxel */
 #endif
 #if BRUME_WITH_SKY
     bool sky;

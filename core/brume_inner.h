@@ -2,16 +2,17 @@
 /*
  * What the core's files share. A file calls only files above it:
  *
- *   brume_fixed    maths                brume_sky      behind the volume
- *   brume_tables   exp, sRGB, filmic    brume_march    the march
- *   brume_nrooks   N-rooks sets         brume_cache    the sun's cache
- *   brume_noise    jitter               brume_temporal history
- *   brume_phase    phase functions      brume_resolve  reprojection
- *   brume_asset    checking             brume_output   pixels
- *   brume_lattice  which rays           brume_filter   space (brume_filter.h)
- *   brume_camera   rays                 brume_upsample resolution
- *   brume_lighting lighting of a frame  brume_show     rows to pixels
- *   brume_lit      the lit march        brume          frames
+ *   brume_fixed    maths                brume_lit      the lit march
+ *   brume_tables   exp, sRGB, filmic    brume_sky      behind the volume
+ *   brume_nrooks   N-rooks sets         brume_march    the march
+ *   brume_noise    jitter               brume_cache    the sun's cache
+ *   brume_phase    phase functions      brume_temporal history
+ *   brume_asset    checking             brume_resolve  reprojection
+ *   brume_lattice  which rays           brume_output   pixels
+ *   brume_camera   rays                 brume_filter   space (brume_filter.h)
+ *   brume_lighting lighting of a frame  brume_upsample resolution
+ *   brume_lamps    which lamps reach    brume_show     rows to pixels
+ *                  what                 brume          frames
  *                                       brume_shadow   the shadow outwards
  */
 #ifndef BRUME_INNER_H
@@ -264,7 +265,7 @@ void brume_light_begin(struct brume_light_ray *light,
 /* floor((2^32 - 1) / |move|), all ones for no move. */
 uint32_t brume_inverse_of_move(int32_t move);
 
-/// brume_lit.c ///
+/// brume_lighting.c ///
 
 #if BRUME_WITH_LIGHTING
 BRUME_INLINE bool brume_is_grey(const uint32_t c[3])
@@ -289,6 +290,9 @@ BRUME_INLINE bool brume_scene_has_colour(const struct brume_scene *s)
     bool grey = brume_is_grey(l->sun_colour);
     for (uint32_t j = 0; j < brume_ambient_colours(l->ambient); j++)
         grey = grey && brume_is_grey(l->ambient_colour[j]);
+    /* also of scenes that nobody has checked yet */
+    for (uint32_t i = 0; l->lamps != NULL && i < l->lamp_count; i++)
+        grey = grey && i < BRUME_MAX_LAMPS && brume_is_grey(l->lamps[i].colour);
     return !grey;
 }
 
@@ -306,6 +310,10 @@ int brume_lit_check(const struct brume_scene *scene);
  * what it needs; the sun is known. BRUME_ERR_SECTION when the volume lacks
  * it. */
 int brume_lit_begin(struct brume_frame *frame, const struct brume_scene *scene);
+
+/* albedo * colour * exposure, Q16.16, each channel; colour <= 256. */
+void brume_lit_colour(uint32_t out[3], const struct brume_scene *scene,
+                      const uint32_t colour[3]);
 
 /* Mips of light = cone: of a segment of 2^m voxels' length that of level m +
  * this. Measured: docs/light.md. */
@@ -325,6 +333,22 @@ BRUME_INLINE int32_t brume_along_zenith(const struct brume_frame *f,
 
 /* A word that changes with the light. */
 uint32_t brume_lit_sameness(const struct brume_frame *frame);
+
+/// brume_lamps.c ///
+
+#if BRUME_WITH_LAMPS
+/* Checks the scene's lamps. */
+int brume_lamps_check(const struct brume_scene *scene);
+
+/* Fills the clusters of a checked scene; camera and lighting are known. */
+void brume_lamps_begin(struct brume_frame *frame,
+                       const struct brume_scene *scene);
+
+/* A word that changes with the lamps, wherever the camera is. */
+uint32_t brume_lamps_sameness(const struct brume_frame *frame);
+#endif
+
+/// brume_lit.c ///
 
 /* Density at a position, as brume_lookup.h's density_at. */
 bool brume_lit_density(const struct brume_frame *frame, uint32_t x, uint32_t y,

@@ -50,7 +50,8 @@ static bool is_missing(const struct brume_scene *s)
     return (!BRUME_WITH_COLOUR && brume_scene_has_colour(s)) ||
            (!BRUME_WITH_AMBIENT && l->ambient != BRUME_AMBIENT_NONE) ||
            (!BRUME_WITH_SKY && (l->sky || l->haze != 0)) ||
-           (!BRUME_WITH_DITHER && l->dither);
+           (!BRUME_WITH_DITHER && l->dither) ||
+           (!BRUME_WITH_LAMPS && l->lamp_count != 0);
 }
 
 static bool cache_is_good(const struct brume_lighting *l)
@@ -77,10 +78,10 @@ int brume_lit_check(const struct brume_scene *scene)
     return is_missing(scene) ? BRUME_ERR_FEATURE : BRUME_OK;
 }
 
-/* albedo * colour * exposure, Q16.16, each channel */
-static void set_colour(uint32_t out[3], const struct brume_scene *s,
-                       const uint32_t colour[3])
+void brume_lit_colour(uint32_t out[3], const struct brume_scene *scene,
+                      const uint32_t colour[3])
 {
+    const struct brume_scene *s = scene;
     uint32_t exposure = s->lighting->exposure;
     for (int c = 0; c < 3; c++) {
         /* Q16 * Q16 -> Q16; the first factor is at most 1 */
@@ -163,7 +164,7 @@ static int set_ambient(struct brume_frame *f, const struct brume_scene *s)
     if (l->visibility == BRUME_SKY_BAKED && f->volume->sky == NULL)
         return BRUME_ERR_SECTION;
     for (uint32_t j = 0; j < n; j++)
-        set_colour(f->lit.ambient_colour[j], s, l->ambient_colour[j]);
+        brume_lit_colour(f->lit.ambient_colour[j], s, l->ambient_colour[j]);
     if (n == 6 && l->visibility != BRUME_SKY_SAMPLED)
         for (int c = 0; c < 3; c++) {
             uint32_t sum = 3; /* six of at most 2^24 */
@@ -216,7 +217,7 @@ int brume_lit_begin(struct brume_frame *frame, const struct brume_scene *scene)
     f->lit.octaves = l->octaves > 1 ? l->octaves : 1;
     for (uint32_t i = 0; i < f->lit.octaves; i++)
         f->lit.weight[i] = power_of(l->octave_b, i);
-    set_colour(f->lit.sun, scene, l->sun_colour);
+    brume_lit_colour(f->lit.sun, scene, l->sun_colour);
     if ((f->lit.sun[0] | f->lit.sun[1] | f->lit.sun[2]) == 0)
         f->lit.light = BRUME_NO_LIGHT;
     else if (l->phase != NULL)

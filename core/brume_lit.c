@@ -6,6 +6,7 @@
  * a build has one format and one lookup, that branch is gone.
  */
 #include "brume_ambient.h"
+#include "brume_lamps.h"
 #include "brume_sun.h"
 
 #if BRUME_WITH_LIGHTING
@@ -139,9 +140,11 @@ static uint32_t channel_of(const struct brume_frame *f,
     for (uint32_t j = 0; j < 6 && f->lit.ambient != BRUME_AMBIENT_NONE; j++)
         if (g->sky[j] != 0)
             light += scaled(g->sky[j], f->lit.ambient_colour[j][c]);
-#else
-    (void)g;
 #endif
+#if BRUME_WITH_LAMPS
+    light += (g->lamp[c] >> 13) + (g->lamp[c] >> 12 & 1u);
+#endif
+    (void)g;
     return light < BRUME_MAX_LIGHT ? light : BRUME_MAX_LIGHT;
 }
 
@@ -212,9 +215,12 @@ static void add_light(const struct brume_frame *f, struct gathered *g,
 #if BRUME_WITH_AMBIENT
     if (f->lit.ambient != BRUME_AMBIENT_NONE)
         add_sky(f, g, ray, p, lost, k);
-#else
-    (void)ray, (void)p, (void)k;
 #endif
+#if BRUME_WITH_LAMPS
+    if (f->lit.clusters != NULL)
+        add_lamps(f, g, ray, p, lost, k);
+#endif
+    (void)ray, (void)p, (void)k;
     g->lit++;
 }
 
@@ -231,6 +237,10 @@ void brume_lit_march(const struct brume_frame *frame,
     uint32_t left = ray->count, reach = 0, m, d;
 #if BRUME_WITH_DEPTH
     uint32_t where = 0;
+#endif
+#if BRUME_WITH_LAMPS
+    if (f->lit.clusters != NULL)
+        begin_lamps(f, &g, ray);
 #endif
     BRUME_TALLY(rays_in_pool, 1);
     for (;;) {

@@ -281,6 +281,9 @@ static void set_lit_taus(struct brume_frame *f, const struct brume_scene *s,
     f->lit.sun_unit = depth;
 #endif
     depth = brume_number_mul(depth, scale);
+#if BRUME_WITH_LAMPS
+    f->lit.lamp_depth = brume_number_mul(unit, scale);
+#endif
     for (uint32_t i = 0; i < f->lit.octaves; i++) {
         set_tau(&f->lit.tau[i], depth);
         if (l != NULL)
@@ -339,6 +342,9 @@ int brume_march_begin(struct brume_frame *frame,
     set_tau(&f->tau, brume_number_mul(unit, light_step));
 #if BRUME_WITH_LIGHTING
     set_lit_taus(f, scene, unit);
+#endif
+#if BRUME_WITH_LAMPS
+    brume_lamps_begin(f, scene);
 #endif
     set_light(f, scene);
     return BRUME_OK;

@@ -80,6 +80,7 @@ enum scene_key {
     SCENE_SUN_SIZE,
     SCENE_HAZE,
     SCENE_DITHER,
+    SCENE_LAMPS,
     SCENE_KEYS
 };
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "noises.h"
+#include "scene_lamps.h"
 #include "scene_phase.h"
 
 #define FAR 1e9 /* world coordinates; the pool's own limit comes later */
@@ -131,6 +132,9 @@ const struct scene_key_info scene_keys[SCENE_KEYS] = {
      "voxels in which the volume fades to 1/e; 0: never (0)"},
     {"dither", SCENE_IS_WORD, 0, 0, "off on",
      "of pixels with few bits, see --pixels (off)"},
+    {"lamps", SCENE_IS_LAMPS, 0, 0, scene_lamps_words,
+     "a lamp per line: X,Y,Z RADIUS SIZE COLOUR [spot X,Y,Z INNER OUTER] "
+     "[shadow SAMPLES] (none)"},
 };
 
 void scene_print_keys(FILE *to)
@@ -214,7 +218,8 @@ void scene_print_number(FILE *to, double value)
 bool scene_key_moves(int key)
 {
     return scene_keys[key].kind != SCENE_IS_WORD &&
-           scene_keys[key].kind != SCENE_IS_PHASE;
+           scene_keys[key].kind != SCENE_IS_PHASE &&
+           scene_keys[key].kind != SCENE_IS_LAMPS;
 }
 
 static const char *wanted(enum scene_kind kind)
@@ -256,6 +261,8 @@ int scene_read_value(int key, const char *text, double out[SCENE_VALUES],
     }
     if (k->kind == SCENE_IS_PHASE)
         return scene_phase_read(text, out, where, err, err_size);
+    if (k->kind == SCENE_IS_LAMPS)
+        return scene_lamps_read(text, out, where, err, err_size);
     int n =
         scene_read_numbers(text, out, 3, k->kind == SCENE_IS_SIZE ? 'x' : '\0');
     bool whole = k->kind == SCENE_IS_INTEGER || k->kind == SCENE_IS_SIZE;

@@ -7,6 +7,7 @@
 
 #include "brume_noise_tables.h"
 #include "scene_keys.h"
+#include "scene_lamps.h"
 #include "scene_phase.h"
 
 /// Values ///
@@ -78,7 +79,7 @@ static void fill_values(const struct scene_settings *s,
 static bool says_something(const struct scene_light *l)
 {
     static const int k_on[] = {SCENE_AMBIENT, SCENE_SKY, SCENE_HAZE,
-                               SCENE_DITHER};
+                               SCENE_DITHER, SCENE_LAMPS};
     const double *sun = value_of(l, SCENE_SUN_COLOUR);
     for (size_t i = 0; i < sizeof k_on / sizeof k_on[0]; i++)
         if (value_of(l, k_on[i])[0] > 0)
@@ -177,6 +178,19 @@ static void make_sky(struct scene_light *l)
     out->dither = value_of(l, SCENE_DITHER)[0] > 0;
 }
 
+static int make_lamps(const struct volume_file *file, struct scene_light *l,
+                      char *err, size_t err_size)
+{
+    int count = scene_lamps_make(value_of(l, SCENE_LAMPS), file, l->lamps, err,
+                                 err_size);
+    if (count <= 0)
+        return count;
+    l->lighting.lamps = l->lamps;
+    l->lighting.lamp_count = (uint32_t)count;
+    l->lighting.clusters = &l->clusters;
+    return 0;
+}
+
 /// Scenes ///
 
 /* What the volume must hold for a word that was said. */
@@ -226,6 +240,8 @@ int scene_light_apply(const struct scene_settings *settings,
     make_ambient(file, light);
     make_sky(light);
     scene_direction(file, k_up, out->zenith);
+    if (make_lamps(file, light, err, err_size) != 0)
+        return -1;
     return make_phase(light, settings->where[SCENE_PHASE], err, err_size);
 }
 
@@ -240,6 +256,8 @@ bool scene_light_has_colour(const struct scene_light *light)
     bool grey = is_grey(l->sun_colour);
     for (int i = 0; i < 6; i++)
         grey = grey && is_grey(l->ambient_colour[i]);
+    for (uint32_t i = 0; i < l->lamp_count; i++)
+        grey = grey && is_grey(l->lamps[i].colour);
     if (l->sky)
         grey = grey && is_grey(l->sky_zenith) && is_grey(l->sky_horizon) &&
                is_grey(l->sky_ground) &&
@@ -254,6 +272,7 @@ void scene_light_print(FILE *to, const struct scene_light *light)
         fprintf(to, "%s = ", scene_keys[key].name);
         switch (scene_keys[key].kind) {
         case SCENE_IS_PHASE: scene_phase_print(to, v); break;
+        case SCENE_IS_LAMPS: scene_lamps_print(to, v); break;
         case SCENE_IS_COLOUR:
             for (int c = 0; c < 3; c++) {
                 fputs(c > 0 ? "," : "", to);

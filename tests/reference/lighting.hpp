@@ -5,6 +5,7 @@
 #define BRUME_REFERENCE_LIGHTING_HPP
 
 #include <array>
+#include <vector>
 
 #include "phase.hpp"
 #include "vec3.hpp"
@@ -23,6 +24,17 @@ struct cone_rule {
     int level = -2;     // log2 of its cube to that of its segment
     int pairs_from = 4; // this sample is the first of two for a doubling;
     int pairs = 2;      // so many doublings have two
+};
+
+// In world space; angles in degrees.
+struct lamp {
+    vec3 position;
+    double radius, size;
+    vec3 colour;
+    bool spot = false;
+    vec3 direction = {0, 0, 0};
+    double inner = 0, outer = 0;
+    int shadow_samples = 0;
 };
 
 struct lighting {
@@ -48,6 +60,7 @@ struct lighting {
     double sun_size; // the radius of its disc, degrees
     double haze;     // voxels; 0: none
     output_curve output;
+    std::vector<lamp> lamps;
 };
 
 } // namespace reference
