@@ -75,12 +75,20 @@ bool wide_by_name(const char *name, enum wide_kernel *kernel)
     return false;
 }
 
+/* Is the frame for the core alone? Fog and sun maps are not done in lanes. */
+static bool needs_core(const struct brume_frame *f)
+{
+    return f->lit.fog.on || f->lit.sun_map != NULL;
+}
+
 int wide_march_copy_rect(enum wide_kernel kernel, const struct wide_copy *copy,
                          const struct brume_frame *frame, unsigned x,
                          unsigned y, unsigned w, unsigned h,
                          struct brume_radiance *out, size_t stride)
 {
     wide_march *march = wide_has(kernel) ? march_of(kernel) : NULL;
+    if (frame != NULL && needs_core(frame))
+        march = NULL;
     /* The scalar one checks a rectangle, too: an empty one of this place. */
     int error = brume_march_rect(frame, x, y, w, march ? 0 : h, out, stride);
     if (error != BRUME_OK || march == NULL)
