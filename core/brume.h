@@ -852,6 +852,44 @@ struct brume_tau {
     uint32_t m, shift, limit;
 };
 
+#if BRUME_WITH_FOG
+/* What a frame makes of its fog. */
+struct brume_lit_fog {
+    bool on;
+    int8_t step_log2;                /* the march's step is step / 2^32 times */
+    uint32_t step;                   /* 2^step_log2, with the highest bit set */
+    uint32_t density;                /* Q0.32 */
+    int32_t base;                    /* along zenith, Q17.14 */
+    struct brume_number per_falloff; /* octaves, Q16, of a height in Q14 */
+    /* Towards the sun: what the density at a place above the base counts for;
+     * that of the way up to the base, Q16 of a height in Q14; and at most.
+     * Q16.16 voxels. */
+    uint32_t way, most_way;
+    struct brume_number per_rise;
+    struct brume_number pace[3];        /* 1 / |sun| */
+    struct brume_number per_light_step; /* light samples of a way in Q16 */
+    uint32_t light_samples;
+    uint32_t extinction[BRUME_MAX_OCTAVES]; /* a^i, as weight */
+    uint32_t shape_count;
+    struct {
+        uint32_t per_half[3]; /* 2^63 over half << shift */
+        uint8_t shift[3];
+        struct brume_number edge; /* Q32 of a rest in Q30 */
+    } shape[BRUME_MAX_FOG_SHAPES];
+};
+#endif
+
+#if BRUME_WITH_SURFACE
+/* What a frame makes of its sun map: columns, rows and how deep, each along an
+ * axis from the origin and in units of its own. */
+struct brume_lit_map {
+    int32_t origin[3];            /* Q17.15, as positions of the frame */
+    int32_t axis[3][3];           /* Q2.30, unit */
+    struct brume_number scale[3]; /* texels Q8, texels Q8, codes, of Q13 */
+    int32_t bias;                 /* Q18.13 */
+};
+#endif
+
 #if BRUME_WITH_LIGHTING
 /* What a frame makes of its lighting. */
 struct brume_lit {
@@ -886,7 +924,7 @@ struct brume_lit {
                                    * light_density_scale */
     struct brume_cache cache;
 #endif
-#if BRUME_WITH_AMBIENT || BRUME_WITH_SKY
+#if BRUME_WITH_AMBIENT || BRUME_WITH_SKY || BRUME_WITH_FOG
     int32_t zenith[3]; /* Q2.30, unit */
 #endif
 #if BRUME_WITH_LAMPS
@@ -894,6 +932,13 @@ struct brume_lit {
     uint32_t tile[2]; /* tiles per ray of the grid, Q16.16 */
     bool lamp_shadows;
     struct brume_number lamp_depth; /* optical depth of a code and voxel */
+#endif
+#if BRUME_WITH_FOG
+    struct brume_lit_fog fog;
+#endif
+#if BRUME_WITH_SURFACE
+    const struct brume_sun_map *sun_map; /* or NULL */
+    struct brume_lit_map map;
 #endif
 #if BRUME_WITH_SKY
     bool sky;
@@ -1027,6 +1072,10 @@ size_t brume_row_bytes(int pixel_format, unsigned w);
 int brume_render_rect(const struct brume_frame *frame, unsigned x, unsigned y,
                       unsigned w, unsigned h, int pixel_format, void *dst,
                       size_t stride);
+
+/* The code of a distance, Q16.16, rounded down: brume_radiance.depth,
+ * brume_surface.depth. */
+uint32_t brume_depth_of(uint32_t distance);
 
 /* What a ray brings back, before the background. */
 struct brume_radiance {

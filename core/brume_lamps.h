@@ -10,6 +10,7 @@
 #define BRUME_LAMPS_H
 
 #include "brume_ambient.h"
+#include "brume_fog.h"
 
 #if BRUME_WITH_LAMPS
 
@@ -129,16 +130,27 @@ static inline uint32_t lamp_density(const struct brume_frame *f,
     return d;
 }
 
-/* exp(-depth of the pool between sample and lamp), Q2.30: the lamp's samples
- * at (i + jitter) / n of the way. Fog adds its depth per voxel here, at the
- * same places, times r / n. */
+/* Fog at a point, Q6.26, so that 64 of them fit a word. */
+static inline uint32_t lamp_fog(const struct brume_frame *f,
+                                const uint32_t p[3])
+{
+#if BRUME_WITH_FOG
+    if (brume_has_fog(f))
+        return fog_at(f, p).all >> 6;
+#endif
+    (void)f, (void)p;
+    return 0;
+}
+
+/* exp(-depth between sample and lamp), Q2.30: the volume and fog at the lamp's
+ * samples, (i + jitter) / n of the way. */
 static inline uint32_t lamp_through(const struct brume_frame *f,
                                     const struct brume_lit_lamp *l,
                                     const struct lamp_way *w,
                                     const struct gathered *g,
                                     const uint32_t p[3], const struct kernel *k)
 {
-    uint32_t at[3], move[3], codes = 0; /* < 64 * 2^16 */
+    uint32_t at[3], move[3], codes = 0 /* < 64 * 2^16 */, fog = 0;
     unsigned shift;
     for (int i = 0; i < 3; i++) {
         int32_t way = with_sign(w->m[i] >> w->up, w->minus[i]);
@@ -148,17 +160,23 @@ static inline uint32_t lamp_through(const struct brume_frame *f,
     }
     for (uint32_t n = 0; n < l->shadow_samples; n++) {
         codes += lamp_density(f, at, k);
+        fog += lamp_fog(f, at);
         for (int i = 0; i < 3; i++)
             at[i] += move[i];
     }
     /* r = square * 1 / sqrt(square), Q31, back to Q16.16 */
     uint32_t r = brume_rsqrt(w->square, &shift);
     r = (mul_hi_floor(w->square, r) << shift) >> (w->up - 1u);
+    struct brume_number part = brume_number_mul(
+        brume_number_of(r, -16), brume_number_of(l->per_sample, -32));
     struct brume_number depth = brume_number_mul(
-        brume_number_mul(brume_number_of(codes, 0), f->lit.lamp_depth),
-        brume_number_mul(brume_number_of(r, -16),
-                         brume_number_of(l->per_sample, -32)));
+        brume_number_mul(brume_number_of(codes, 0), f->lit.lamp_depth), part);
     uint32_t tau = brume_number_floor(depth, 13); /* to 1/4096, rounded */
+    if (fog != 0) {
+        uint32_t more = brume_number_floor(
+            brume_number_mul(brume_number_of(fog, -26), part), 13);
+        tau = tau + more < tau ? 0xffffffffu : tau + more;
+    }
     tau = (tau >> 1) + (tau & 1u);
     if (tau > 0xffffu)
         return 0;

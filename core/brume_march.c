@@ -10,6 +10,11 @@
 
 /// View ///
 
+uint32_t brume_depth_of(uint32_t distance)
+{
+    return brume_depth_code(distance);
+}
+
 #if BRUME_WITH_DEPTH
 uint32_t brume_mean_depth(const struct brume_frame *frame, uint32_t t,
                           uint32_t moment, uint32_t lost)
@@ -242,6 +247,10 @@ static void set_light(struct brume_frame *f, const struct brume_scene *s)
     uint32_t jitter = 0;
 #if BRUME_WITH_CONE
     if (s->light == BRUME_CONE) /* the middle of each segment */
+        jitter = 0x8000u;
+#endif
+#if BRUME_WITH_FOG
+    if (s->light == BRUME_CACHE) /* the same: of shapes of fog */
         jitter = 0x8000u;
 #endif
     f->light_samples = s->light == BRUME_NO_LIGHT ? 0 : s->light_samples;

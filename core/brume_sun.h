@@ -90,11 +90,11 @@ static inline uint32_t segment_way(const struct brume_frame *f,
 /* Density along the segments that samples stand for, times their length in
  * light steps: [0, 1) with the sample's own density d, [1, 2), [2, 4) and so
  * on, but [16, 64) in four; see docs/light.md. < 2^32: a 16-bit code times
- * 2^15. */
+ * 2^15. From inside of the pool it ends where the pool does. */
 static inline uint32_t sum_cone(const struct brume_frame *f,
                                 const struct brume_light_ray *light,
                                 const uint32_t from[3], uint32_t d,
-                                const struct kernel *k)
+                                const struct kernel *k, bool inside)
 {
     const struct brume_volume *v = f->volume;
     struct mip mip = {3,
@@ -108,8 +108,11 @@ static inline uint32_t sum_cone(const struct brume_frame *f,
         uint32_t x = from[0] + (segment_way(f, light, 0, i) << octave);
         uint32_t y = from[1] + (segment_way(f, light, 1, i) << octave);
         uint32_t z = from[2] + (segment_way(f, light, 2, i) << octave);
-        if (x >= f->limit[0] || y >= f->limit[1] || z >= f->limit[2])
-            break;
+        if (x >= f->limit[0] || y >= f->limit[1] || z >= f->limit[2]) {
+            if (inside)
+                break;
+            continue;
+        }
         sum += mean_at(f, &mip, x, y, z, f->lit.cone_level + (int32_t)length, k)
                << length;
     }
@@ -166,7 +169,8 @@ static inline uint32_t sum_cache(const struct brume_frame *f,
 }
 #endif
 
-/* Optical depth towards the sun, in units of lit.tau. */
+/* Optical depth towards the sun from inside of the pool, in units of lit.tau.
+ */
 static inline uint32_t sun_sum(const struct brume_frame *f,
                                const struct brume_light_ray *light,
                                const uint32_t p[3], uint32_t d, uint32_t *reach,
@@ -178,7 +182,7 @@ static inline uint32_t sun_sum(const struct brume_frame *f,
     case BRUME_UNIFORM: return sum_uniform(f, light, x, y, z, *k);
 #endif
 #if BRUME_WITH_CONE
-    case BRUME_CONE: return sum_cone(f, light, p, d, k);
+    case BRUME_CONE: return sum_cone(f, light, p, d, k, true);
 #endif
 #if BRUME_WITH_CACHE
     case BRUME_CACHE: return sum_cache(f, p, k->moved);

@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "brume_noise_tables.h"
+#include "scene_air.h"
+#include "scene_files.h"
 #include "scene_keys.h"
 #include "scene_lamps.h"
 #include "scene_phase.h"
@@ -73,6 +75,7 @@ static void fill_values(const struct scene_settings *s,
     if (!s->set[SCENE_VISIBILITY_SAMPLES])
         l->value[SCENE_VISIBILITY_SAMPLES - SCENE_LIGHT_FIRST][0] =
             samples_across(file, value_of(l, SCENE_VISIBILITY_STEP)[0]);
+    memcpy(l->file, s->file, sizeof l->file);
 }
 
 /* Do they say more than a scene without them? */
@@ -84,6 +87,8 @@ static bool says_something(const struct scene_light *l)
     for (size_t i = 0; i < sizeof k_on / sizeof k_on[0]; i++)
         if (value_of(l, k_on[i])[0] > 0)
             return true;
+    if (scene_air_says_something(l))
+        return true;
     return !scene_phase_is_isotropic(value_of(l, SCENE_PHASE)) ||
            value_of(l, SCENE_OCTAVES)[0] > 1 ||
            value_of(l, SCENE_EXPOSURE)[0] != 1 || sun[0] != 1 || sun[1] != 1 ||
@@ -240,7 +245,8 @@ int scene_light_apply(const struct scene_settings *settings,
     make_ambient(file, light);
     make_sky(light);
     scene_direction(file, k_up, out->zenith);
-    if (make_lamps(file, light, err, err_size) != 0)
+    if (make_lamps(file, light, err, err_size) != 0 ||
+        scene_air_apply(settings, file, scene, light, err, err_size) != 0)
         return -1;
     return make_phase(light, settings->where[SCENE_PHASE], err, err_size);
 }
@@ -273,6 +279,12 @@ void scene_light_print(FILE *to, const struct scene_light *light)
         switch (scene_keys[key].kind) {
         case SCENE_IS_PHASE: scene_phase_print(to, v); break;
         case SCENE_IS_LAMPS: scene_lamps_print(to, v); break;
+        case SCENE_IS_FILE: {
+            const struct scene_file_data *data =
+                light->file[key - SCENE_FILE_FIRST];
+            fputs(data != NULL ? data->path : "none", to);
+            break;
+        }
         case SCENE_IS_COLOUR:
             for (int c = 0; c < 3; c++) {
                 fputs(c > 0 ? "," : "", to);
