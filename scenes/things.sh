@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 # things.sh bars|posts: geometry of the composed scenes as Wavefront OBJ on
 # stdout, in a world of +Y up.
-#   bars   a wall from x -100 to 100 and y 0 to 100 at z = 0, 4 thick, with a
-#          window behind a lattice of bars: 5 x 4 openings
+#   bars   a wall of 1200 x 400 at z = 0, 4 thick, with a window of 96 x 60 in
+#          it behind a lattice of bars: 4 x 2 openings
 #   posts  lamp posts along a street in z, at x = -36 and 36: mast, arm and hood
 set -eu
 
@@ -28,12 +28,13 @@ function box(a, b, c, d, e, f,    i) {
 BEGIN {
     if (what == "bars") {
         # the wall around an opening of x -45..45, y 20..80
-        box(-100, 0, -2, -45, 100, 2)
-        box(45, 0, -2, 100, 100, 2)
-        box(-45, 0, -2, 45, 20, 2)
-        box(-45, 80, -2, 45, 100, 2)
-        for (i = 1; i < 5; i++) box(-45 + 18 * i - 2, 20, -2, -45 + 18 * i + 2, 80, 2)
-        for (i = 1; i < 4; i++) box(-45, 20 + 15 * i - 2, -2, 45, 20 + 15 * i + 2, 2)
+        box(-600, 0, -2, -48, 400, 2)
+        box(48, 0, -2, 600, 400, 2)
+        box(-48, 0, -2, 48, 20, 2)
+        box(-48, 80, -2, 48, 400, 2)
+        for (i = -1; i < 2; i++)
+            box(24 * i - 3.5, 20, -1, 24 * i + 3.5, 80, 1)
+        box(-48, 46.5, -1, 48, 53.5, 1)
     }
     if (what == "posts")
         for (z = 0; z <= 320; z += 80) for (s = -1; s <= 1; s += 2) {

@@ -74,6 +74,7 @@ test_usage()
 --sky 17
 --sky 1,2
 --cover 1,2,3,4,5
+--shadow-area 1,2,1,3
 --samples 0
 --samples 17
 --threads 257
@@ -86,6 +87,8 @@ END
         --area 0,0,1,1
     check "--shadow on hills" nothing 2 'level ground' "$volume" \
         --area 0,0,1,1 --heights x.pgm --rise 1 --shadow s.png
+    check "--shadow-area alone" nothing 2 'without --shadow' "$volume" \
+        --area 0,0,1,1 --shadow-area 0,0,1,1
     check "two outputs in one file" fails 2 'in one file' "$brume" surface \
         "$volume" --mesh "$good" --depth "$none/a.png" --colour "$none/a.png"
     check "a depth that is no grey picture" fails 2 'a .pgm or a .png' \
@@ -202,7 +205,57 @@ test_shadow()
     # 0.2 * (4 + 0.1) and 0.2 * 0.1: codes 233.65 and 38.68
     check "half of the ground is in shadow" [ "$(tail -c 192 "$work/half.ppm" |
         od -An -v -tu1 -w192 | awk '{ print $1, $190 }')" = "234 39" ]
+    runs "$brume" surface "$volume" --set size=64x48 --set eye=0,50,0 \
+        --set target=0,0,0 --set up=0,0,-1 --set fov=80 --set sun=0,90 \
+        --area -900,-900,900,900 --albedo 0.2 --shadow "$work/half.pgm" \
+        --shadow-area -60,-60,60,60 --colour "$work/wide.ppm"
+    check "its area may be a part of the ground" same half.ppm wide.ppm
 }
+
+# What the files are for: a wall before the volume hides it, one behind it does
+# not; under a roof it has the light of no sun, under one that is elsewhere that
+# of all.
+test_core()
+{
+    view="--set eye=16,16,-60 --set target=16,16,16 --set fov=50"
+    sun="--set sun=0,90 --set ambient=constant"
+    for wall in "before -40" "behind 60"; do
+        name=${wall% *} z=${wall#* }
+        printf 'v -200 -200 %d\nv 200 -200 %d\nv 0 400 %d\nf 1 2 3\n' \
+            "$z" "$z" "$z" >"$work/$name.obj"
+        # shellcheck disable=SC2086
+        runs "$brume" surface "$volume" --set size=64x48 $view --mesh \
+            "$work/$name.obj" --depth "$work/$name.png" \
+            --colour "$work/$name.ppm"
+        # shellcheck disable=SC2086
+        render "${name}_ends.ppm" $view --over "$work/$name.ppm" \
+            --set surface="$work/$name.png"
+        # shellcheck disable=SC2086
+        render "${name}_all.ppm" $view --over "$work/$name.ppm"
+    done
+    check "a wall before the volume hides it" same before.ppm before_ends.ppm
+    check "one behind it does not" same behind_all.ppm behind_ends.ppm
+    check "of which there is something" differs behind.ppm behind_all.ppm
+    for roof in "over 0" "aside 1000"; do
+        name=${roof% *} x=${roof#* }
+        printf 'v %d 90 -300\nv %d 90 -300\nv %d 90 500\nf 1 2 3\n' \
+            $((x - 300)) $((x + 300)) "$x" >"$work/$name.obj"
+        # shellcheck disable=SC2086
+        runs "$brume" surface "$volume" --set size=64x48 $view $sun \
+            --mesh "$work/$name.obj" --sun-map "$work/$name.pgm" --size 300x300
+        # shellcheck disable=SC2086
+        render "$name.ppm" $view $sun --set sun_map="$work/$name.pgm"
+    done
+    # shellcheck disable=SC2086
+    render dark.ppm $view $sun --set sun_colour=0
+    # shellcheck disable=SC2086
+    render light.ppm $view $sun
+    check "under a roof there is no sun" same over.ppm dark.ppm
+    check "under one that is elsewhere there is" same aside.ppm light.ppm
+    check "which tells" differs light.ppm dark.ppm
+}
+
+differs() { ! cmp -s "$work/$1" "$work/$2"; }
 
 "$BUILD/brume-cloud" -o "$work/cloud.vdb" --size 32 >/dev/null &&
     "$BUILD/brume-bake" "$work/cloud.vdb" -o "$volume" >/dev/null || exit 1
@@ -225,4 +278,5 @@ test_input
 test_same
 test_over
 test_shadow
+test_core
 finish

@@ -32,8 +32,11 @@ static const char k_help[] =
     "Light:\n"
     "  --sky A           radiance of the sky on things: a number or R,G,B\n"
     "                    (the scene's ambient light from above, else 0.1)\n"
-    "  --shadow MAP      the volume's shadow on the level ground, as `brume\n"
-    "                    shadow` draws it with this --plane and --area\n"
+    "  --shadow MAP      the volume's shadow, as `brume shadow` draws it on "
+    "the\n"
+    "                    --plane of the level ground; things above it get it, "
+    "too\n"
+    "  --shadow-area X0,Z0,X1,Z1  where it says that the map is (--area)\n"
     "  --samples N       rays across a pixel and down, of --colour: 1 to 16 "
     "(1)\n"
     "\n"
@@ -63,8 +66,8 @@ struct options {
     double albedo[SURFACE_THINGS][3];
     int things;
     double next_albedo[3]; /* of the next thing */
-    double sky[3], cover[6], bias;
-    bool has_area, has_plane, has_rise, has_sky, has_cover;
+    double sky[3], cover[6], shadow_area[4], bias;
+    bool has_shadow_area, has_area, has_plane, has_rise, has_sky, has_cover;
     unsigned size[2], samples, threads;
 };
 
@@ -129,6 +132,17 @@ static int read_cover(struct options *o, const char *value)
                         : usage("--cover is X0,Y0,Z0,X1,Y1,Z1, not ", value);
 }
 
+static int read_shadow_area(struct options *o, const char *value)
+{
+    const double *a = o->shadow_area;
+    o->has_shadow_area =
+        numbers_read(value, 4, o->shadow_area) && a[0] != a[2] && a[1] != a[3];
+    return o->has_shadow_area
+               ? 0
+               : usage("--shadow-area is X0,Z0,X1,Z1, with an area, not ",
+                       value);
+}
+
 static int read_size(struct options *o, const char *value)
 {
     return numbers_size(value, BRUME_MAX_SIZE, o->size)
@@ -186,10 +200,10 @@ static int read_scene(struct options *o, const char *name, const char *value)
 static bool takes_value(const char *name)
 {
     static const char *const k_names[] = {
-        "--depth", "--colour",  "--sun-map", "--heights", "--shadow",
-        "--scene", "--set",     "--mesh",    "--albedo",  "--area",
-        "--plane", "--rise",    "--bias",    "--sky",     "--cover",
-        "--size",  "--samples", "--threads"};
+        "--depth", "--colour",  "--sun-map", "--heights",    "--shadow",
+        "--scene", "--set",     "--mesh",    "--albedo",     "--area",
+        "--plane", "--rise",    "--bias",    "--sky",        "--cover",
+        "--size",  "--samples", "--threads", "--shadow-area"};
     for (size_t i = 0; i < sizeof k_names / sizeof *k_names; i++)
         if (strcmp(name, k_names[i]) == 0)
             return true;
@@ -209,6 +223,8 @@ static int read_value(struct options *o, const char *name, const char *value)
         return read_albedo(o, value);
     if (strcmp(name, "--area") == 0)
         return read_area(o, value);
+    if (strcmp(name, "--shadow-area") == 0)
+        return read_shadow_area(o, value);
     if (strcmp(name, "--sky") == 0)
         return read_sky(o, value);
     if (strcmp(name, "--cover") == 0)
@@ -242,6 +258,8 @@ static int check_options(const struct options *o)
         return usage("--plane, --heights and --shadow are of a ground: say "
                      "its --area",
                      "");
+    if (o->has_shadow_area && o->shadow == NULL)
+        return usage("--shadow-area without --shadow", "");
     if (o->shadow != NULL && o->heights != NULL)
         return usage("--shadow lies on a level ground, not on --heights", "");
     return 0;
@@ -354,7 +372,9 @@ static int read_shadow(struct run *r, char *err, size_t err_size)
                            "%s: a shadow is a grey picture of 8 bits", path);
     shade->map = &r->shadow;
     shade->plane = r->o->ground.plane;
-    memcpy(shade->area, r->o->ground.area, sizeof shade->area);
+    memcpy(shade->area,
+           r->o->has_shadow_area ? r->o->shadow_area : r->o->ground.area,
+           sizeof shade->area);
     return 0;
 }
 
