@@ -274,6 +274,10 @@ static uint32_t sameness(const struct brume_frame *f)
     if (f->lit.on)
         h = (h ^ h >> 15) * 2246822519u ^ brume_lit_sameness(f);
 #endif
+#if BRUME_WITH_LAMPS
+    if (f->lit.on)
+        h = (h ^ h >> 15) * 2246822519u ^ brume_lamps_sameness(f);
+#endif
     return h;
 }
 #endif
@@ -291,6 +295,10 @@ int brume_begin_frame(struct brume_frame *frame,
 #if BRUME_WITH_LIGHTING
     if (err == BRUME_OK)
         err = brume_lit_check(scene);
+#endif
+#if BRUME_WITH_LAMPS
+    if (err == BRUME_OK)
+        err = brume_lamps_check(scene);
 #endif
     if (err)
         return err;

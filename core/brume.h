@@ -601,32 +601,70 @@ struct brume_fog {
 /* A lamp lights what is at distance r, less than its radius, by
  * colour * (size / max(r, size))^2 * (1 - (r / radius)^4)^2, in units of the
  * sun's light; a spot that times smoothstep from cos_outer to cos_inner of the
- * angle to its direction. */
+ * angle to its direction: 0 at cos_outer and outside, 1 within cos_inner. */
 struct brume_lamp {
-    int32_t position[3];  /* Q16.16 */
+    int32_t position[3];  /* Q16.16, within BRUME_MAX_COORDINATE */
     uint32_t radius;      /* Q16.16 voxels, 1 .. 16384 */
     uint32_t size;        /* Q16.16 voxels, 1/16 .. radius */
     uint32_t colour[3];   /* Q16.16, 0 .. 256 */
-    int32_t direction[3]; /* of a spot, any length */
-    /* Q2.30; cos_outer of -1: a point light, whatever the other */
+    int32_t direction[3]; /* of a spot, any length > 0 */
+    /* Q2.30, -1 .. 1, cos_outer <= cos_inner; cos_outer of -1: a point light,
+     * whatever cos_inner and direction */
     int32_t cos_outer, cos_inner;
     /* Samples at equal distances between lamp and what it lights, jittered
      * with the light ray's noise; 0: no shadow. 0 .. 64 */
     uint8_t shadow_samples;
 };
+
+/* What a frame makes of a lamp. No user-visible fields. */
+struct brume_lit_lamp {
+    uint32_t position[3]; /* with the frame's bias, Q16.16, plus 2^31 */
+    uint32_t radius;      /* Q16.16 */
+    uint32_t colour[3];   /* Q12.20: albedo and exposure applied */
+    uint32_t size;        /* mantissa of its square, Q0.32, >= 1/2 */
+    uint32_t per_radius;  /* mantissa of 2^-64 / its square, 2^29 .. 2^31 */
+    int32_t direction[3]; /* of a spot, Q2.30, unit */
+    int32_t cos_outer, cos_inner;
+    uint32_t slope;      /* mantissa of 1 / (cos_inner - cos_outer) */
+    uint32_t per_sample; /* Q0.32: 1 / shadow_samples */
+    uint8_t size_shift, radius_shift, slope_shift;
+    uint8_t shadow_samples;
+    bool spot;
+    /* Of the clusters: beyond `reach`, Q16.16, nothing counts as within the
+     * radius; depth as struct brume_clusters.end; tiles, both ends included;
+     * `before` is of use while those are found. */
+    uint32_t reach, depth;
+    uint8_t from[2], to[2];
+    bool before;
+};
+
 /* Which lamps reach which part of the view: a word of bits for each of
- * BRUME_CLUSTER_SIDE^2 tiles of the frame's lattice and BRUME_CLUSTER_SLICES
- * slices of depth. The caller's memory, filled by brume_begin_frame. There is
- * a bit for every lamp, so a cluster cannot overflow. */
+ * BRUME_CLUSTER_SIDE^2 tiles of the frame's grid of rays and
+ * BRUME_CLUSTER_SLICES slices of depth. The caller's memory, 24 KB with the
+ * limits below; brume_begin_frame fills it for one frame, so it stays as it is
+ * until that frame's last ray. There is a bit for every lamp, so a cluster
+ * cannot overflow. */
 #ifndef BRUME_CLUSTER_SIDE /* 1 .. 64 */
 #define BRUME_CLUSTER_SIDE 16
 #endif
 #ifndef BRUME_CLUSTER_SLICES /* 1 .. 32 */
 #define BRUME_CLUSTER_SLICES 8
 #endif
+#if BRUME_CLUSTER_SIDE < 1 || BRUME_CLUSTER_SIDE > 64
+#error "brume: BRUME_CLUSTER_SIDE is 1 .. 64"
+#endif
+#if BRUME_CLUSTER_SLICES < 1 || BRUME_CLUSTER_SLICES > 32
+#error "brume: BRUME_CLUSTER_SLICES is 1 .. 32"
+#endif
+#define BRUME_LAMP_WORDS ((BRUME_MAX_LAMPS + 31) / 32)
 struct brume_clusters {
+    /* lamp n is in word n / 32, from its highest bit down */
     uint32_t lamps[BRUME_CLUSTER_SLICES][BRUME_CLUSTER_SIDE][BRUME_CLUSTER_SIDE]
-                  [(BRUME_MAX_LAMPS + 31) / 32];
+                  [BRUME_LAMP_WORDS];
+    /* Where slices end, Q16.16, by the largest of the three coordinates'
+     * distances from the eye */
+    uint32_t end[BRUME_CLUSTER_SLICES];
+    struct brume_lit_lamp lamp[BRUME_MAX_LAMPS];
 };
 
 /* Where rays end: for each pixel of the image a distance from the eye along its
@@ -685,7 +723,8 @@ struct brume_lighting {
 
     const struct brume_fog *fog; /* or NULL */
     const struct brume_lamp *lamps;
-    uint32_t lamp_count;                 /* 0 .. BRUME_MAX_LAMPS */
+    /* 0 .. BRUME_MAX_LAMPS; more get BRUME_ERR_SCENE, none is left out */
+    uint32_t lamp_count;
     struct brume_clusters *clusters;     /* when there are lamps */
     const struct brume_surface *surface; /* or NULL */
     const struct brume_sun_map *sun_map; /* or NULL */
@@ -813,6 +852,44 @@ struct brume_tau {
     uint32_t m, shift, limit;
 };
 
+#if BRUME_WITH_FOG
+/* What a frame makes of its fog. */
+struct brume_lit_fog {
+    bool on;
+    int8_t step_log2;                /* the march's step is step / 2^32 times */
+    uint32_t step;                   /* 2^step_log2, with the highest bit set */
+    uint32_t density;                /* Q0.32 */
+    int32_t base;                    /* along zenith, Q17.14 */
+    struct brume_number per_falloff; /* octaves, Q16, of a height in Q14 */
+    /* Towards the sun: what the density at a place above the base counts for;
+     * that of the way up to the base, Q16 of a height in Q14; and at most.
+     * Q16.16 voxels. */
+    uint32_t way, most_way;
+    struct brume_number per_rise;
+    struct brume_number pace[3];        /* 1 / |sun| */
+    struct brume_number per_light_step; /* light samples of a way in Q16 */
+    uint32_t light_samples;
+    uint32_t extinction[BRUME_MAX_OCTAVES]; /* a^i, as weight */
+    uint32_t shape_count;
+    struct {
+        uint32_t per_half[3]; /* 2^63 over half << shift */
+        uint8_t shift[3];
+        struct brume_number edge; /* Q32 of a rest in Q30 */
+    } shape[BRUME_MAX_FOG_SHAPES];
+};
+#endif
+
+#if BRUME_WITH_SURFACE
+/* What a frame makes of its sun map: columns, rows and how deep, each along an
+ * axis from the origin and in units of its own. */
+struct brume_lit_map {
+    int32_t origin[3];            /* Q17.15, as positions of the frame */
+    int32_t axis[3][3];           /* Q2.30, unit */
+    struct brume_number scale[3]; /* texels Q8, texels Q8, codes, of Q13 */
+    int32_t bias;                 /* Q18.13 */
+};
+#endif
+
 #if BRUME_WITH_LIGHTING
 /* What a frame makes of its lighting. */
 struct brume_lit {
@@ -847,8 +924,21 @@ struct brume_lit {
                                    * light_density_scale */
     struct brume_cache cache;
 #endif
-#if BRUME_WITH_AMBIENT || BRUME_WITH_SKY
+#if BRUME_WITH_AMBIENT || BRUME_WITH_SKY || BRUME_WITH_FOG
     int32_t zenith[3]; /* Q2.30, unit */
+#endif
+#if BRUME_WITH_LAMPS
+    const struct brume_clusters *clusters; /* NULL: no lamp in sight */
+    uint32_t tile[2]; /* tiles per ray of the grid, Q16.16 */
+    bool lamp_shadows;
+    struct brume_number lamp_depth; /* optical depth of a code and voxel */
+#endif
+#if BRUME_WITH_FOG
+    struct brume_lit_fog fog;
+#endif
+#if BRUME_WITH_SURFACE
+    const struct brume_sun_map *sun_map; /* or NULL */
+    struct brume_lit_map map;
 #endif
 #if BRUME_WITH_SKY
     bool sky;
@@ -862,7 +952,9 @@ struct brume_lit {
 };
 #endif
 
-/* All that is computed once a frame. For users: grid and lattice. */
+/* All that is computed once a frame. For users: grid and lattice; and
+ * background, which may be changed between rectangles, as far up as 1, with
+ * lighting as BRUME_MAX_LIGHT: so a picture lies behind, pixel by pixel. */
 struct brume_frame {
     const struct brume_volume *volume;
     /* Loss of transmittance per sample, Q0.32, by 8-bit density; or two
@@ -980,6 +1072,10 @@ size_t brume_row_bytes(int pixel_format, unsigned w);
 int brume_render_rect(const struct brume_frame *frame, unsigned x, unsigned y,
                       unsigned w, unsigned h, int pixel_format, void *dst,
                       size_t stride);
+
+/* The code of a distance, Q16.16, rounded down: brume_radiance.depth,
+ * brume_surface.depth. */
+uint32_t brume_depth_of(uint32_t distance);
 
 /* What a ray brings back, before the background. */
 struct brume_radiance {

@@ -4,8 +4,8 @@
 #ifndef BRUME_AMBIENT_H
 #define BRUME_AMBIENT_H
 
+#include "brume_air.h"
 #include "brume_dense.h"
-#include "brume_light.h"
 
 #if BRUME_WITH_LIGHTING
 
@@ -15,12 +15,17 @@ struct gathered {
 #if BRUME_WITH_AMBIENT
     uint32_t sky[6]; /* B_j */
 #endif
+#if BRUME_WITH_LAMPS
+    uint32_t lamp[3]; /* C_c, Q3.29, colours applied */
+    /* Where the ray is among the clusters, and its jitter, Q0.16. */
+    uint32_t lamp_tile[2], lamp_axis, lamp_slice, lamp_jitter;
+#endif
     uint32_t moved[3]; /* Q16.16, 0 .. 1: of stochastic lookups */
     uint32_t lit;      /* samples */
 };
 
 #if BRUME_WITH_AMBIENT
-/* Q2.30 of what the asset says that the sky's share is. */
+/* Q2.30 of what the asset says that the sky's share is. p is in the pool. */
 static inline uint32_t baked_sky(const struct brume_frame *f,
                                  const uint32_t p[3])
 {
@@ -58,7 +63,7 @@ static inline uint32_t sky_transmittance(const struct brume_frame *f,
                                          const uint32_t p[3],
                                          const int32_t local[3],
                                          int32_t world[3],
-                                         const struct kernel *k)
+                                         const struct kernel *k, bool inside)
 {
     struct brume_light_ray ray;
     for (int i = 0; i < 3; i++) {
@@ -71,9 +76,14 @@ static inline uint32_t sky_transmittance(const struct brume_frame *f,
         world[i] = sum;
     }
     ray.samples = f->lit.sky_samples;
-    uint32_t n = light_reach(f, &ray, p[0], p[1], p[2], ray.samples >> 1);
-    return transmittance_of(&f->lit.sky_tau,
-                            sum_log(f, &ray, p[0], p[1], p[2], n, *k));
+    uint32_t sum = 0;
+    if (inside) {
+        uint32_t n = light_reach(f, &ray, p[0], p[1], p[2], ray.samples >> 1);
+        sum = sum_log(f, &ray, p[0], p[1], p[2], n, *k);
+    } else if (!leads_away(f, p, ray.first)) {
+        sum = sum_log_outside(f, &ray, p, k);
+    }
+    return transmittance_of(&f->lit.sky_tau, sum);
 }
 
 /* Height in the volume's box along zenith, Q0.32. */
@@ -107,16 +117,18 @@ static inline void add_cube(struct gathered *g, uint32_t seen,
 
 static inline void add_sky(const struct brume_frame *f, struct gathered *g,
                            const struct brume_ray *ray, const uint32_t p[3],
-                           uint32_t lost, const struct kernel *k)
+                           uint32_t lost, const struct kernel *k, bool inside)
 {
     uint32_t through = 1u << 30;
     int32_t local[3], way[3] = {0, 0, 0};
     bool sampled = f->lit.visibility == BRUME_SKY_SAMPLED;
     if (sampled) {
         sky_direction(f, ray->x, ray->y, g->lit, local);
-        through = sky_transmittance(f, p, local, way, k);
+        through = sky_transmittance(f, p, local, way, k, inside);
     } else if (f->lit.visibility == BRUME_SKY_BAKED) {
-        through = baked_sky(f, p);
+        uint32_t nearest[3];
+        hold_in_pool(f, p, nearest);
+        through = baked_sky(f, nearest);
     }
     uint32_t seen = mul_hi_floor(lost, through); /* Q3.29 */
     if (f->lit.ambient == BRUME_AMBIENT_GRADIENT) {

@@ -7,15 +7,6 @@
 
 /// Camera ///
 
-static void cross(int32_t out[3], const int32_t a[3], const int32_t b[3])
-{
-    for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        out[i] = mul_both_signed_round(a[j], b[k], 2) -
-                 mul_both_signed_round(a[k], b[j], 2);
-    }
-}
-
 /* The unit vector right of `ahead`; false when up is parallel to it (to
  * 2^-16 radians) or zero. */
 static bool right_of(int32_t right[3], const int32_t ahead[3],
@@ -24,7 +15,7 @@ static bool right_of(int32_t right[3], const int32_t ahead[3],
     int32_t unit[3] = {up[0], up[1], up[2]};
     if (!brume_normalise(unit))
         return false;
-    cross(right, ahead, unit);
+    brume_cross(right, ahead, unit);
     if ((magnitude(right[0]) | magnitude(right[1]) | magnitude(right[2])) <
         1u << 14)
         return false;
@@ -108,7 +99,7 @@ static void project(struct brume_frame *f, const int32_t ahead[3],
     struct brume_number centre = brume_number_mul(
         brume_number_mul(brume_number_of(c, -30), brume_number_of(h, 0)),
         inverse);
-    cross(up, right, ahead);
+    brume_cross(up, right, ahead);
     scale(f->ahead, ahead, centre);
     scale(f->per_x, right, per_pixel);
     scale(f->per_y, up, per_pixel);
@@ -354,6 +345,19 @@ static bool inside(const struct brume_frame *f, const uint32_t p[3])
     return p[0] < f->limit[0] && p[1] < f->limit[1] && p[2] < f->limit[2];
 }
 
+static void set_moves(struct brume_ray *ray, const struct brume_frame *f,
+                      const int32_t unit[3])
+{
+    for (int i = 0; i < 3; i++)
+        ray->line.move[i] = mul_signed_round(unit[i], f->step, 2);
+}
+
+/* Distance of the lattice's first point. */
+static uint32_t first_t(const struct brume_frame *f, uint32_t jitter)
+{
+    return mul_hi_floor(jitter << 16, f->step);
+}
+
 /* To the first lattice point in the pool: near `t_in`, but decided by the
  * positions themselves, so that later code need not look. Positions are true
  * modulo 2^32 and within a few steps of the pool, so none wraps into it. */
@@ -364,15 +368,9 @@ static bool enter(struct brume_ray *ray, const struct brume_frame *f,
     uint32_t k = t_in / f->step;
     if (k > 0)
         k--;
-    uint32_t t = k * f->step + mul_hi_floor(jitter << 16, f->step);
-    for (int i = 0; i < 3; i++) {
-        uint32_t m = magnitude(unit[i]);
-        /* Q30 * Q16 -> Q16, rounded */
-        uint32_t way =
-            (mul_hi_floor(m, t) << 2 | (m * t) >> 30) + ((m * t) >> 29 & 1u);
-        ray->position[i] = (uint32_t)f->eye[i] + (unit[i] < 0 ? 0u - way : way);
-        ray->line.move[i] = mul_signed_round(unit[i], f->step, 2);
-    }
+    uint32_t t = k * f->step + first_t(f, jitter);
+    brume_ray_place(f, unit, t, ray->position);
+    set_moves(ray, f, unit);
     uint32_t tries = t_out > t ? (t_out - t) / f->step + 2u : 2u;
     for (; !inside(f, ray->position); tries--, t += f->step) {
         if (tries == 0)
@@ -380,7 +378,7 @@ static bool enter(struct brume_ray *ray, const struct brume_frame *f,
         for (int i = 0; i < 3; i++)
             ray->position[i] += (uint32_t)ray->line.move[i];
     }
-#if BRUME_WITH_DEPTH
+#if BRUME_RAY_HAS_T
     ray->t = t;
 #endif
     return true;
@@ -480,6 +478,8 @@ bool brume_rays_miss(const struct brume_frame *frame, uint32_t x, uint32_t y,
     const struct brume_frame *f = frame;
     uint32_t last = x + n - 1u, bottom = y;
     int32_t d[4][3];
+    if (brume_has_fog(f))
+        return false;
     grid_of(f, &x, &y);
     grid_of(f, &last, &bottom);
     brume_grid_direction(f, x, y, d[0]);
@@ -539,6 +539,85 @@ static void set_lit(struct brume_ray *ray, const struct brume_frame *f,
 }
 #endif
 
+/// Where rays end ///
+
+#if BRUME_WITH_SURFACE
+/* Takes away what lies at or behind the surface; false when nothing is left. */
+static bool cut_at_surface(struct brume_ray *ray, const struct brume_frame *f,
+                           uint32_t x, uint32_t y)
+{
+    uint32_t n =
+        brume_samples_before(brume_surface_distance(f, x, y), ray->t, f->step);
+    ray->count = n < ray->count ? n : ray->count;
+    return n > 0;
+}
+#endif
+
+#if BRUME_WITH_FOG
+/* Where the ray comes to a coordinate of +-32767, Q16.16. */
+static uint32_t time_of_edge(const struct brume_frame *f, const int32_t unit[3])
+{
+    const uint32_t edge = 0x7fff0000u;
+    uint32_t t_edge = 0xffffffffu;
+    for (int i = 0; i < 3; i++) {
+        if (unit[i] == 0)
+            continue;
+        uint32_t room = unit[i] < 0 ? edge + (uint32_t)f->eye[i]
+                                    : edge - (uint32_t)f->eye[i];
+        uint32_t t = time_of(room, pace_of(magnitude(unit[i])));
+        t_edge = t < t_edge ? t : t_edge;
+    }
+    return t_edge;
+}
+
+/* Samples of a ray through fog, from the eye on; those in the pool, if there
+ * are any (`meets`), are known already. False when nothing is left. */
+static bool begin_in_fog(struct brume_ray *ray, const struct brume_frame *f,
+                         const int32_t unit[3], uint32_t x, uint32_t y,
+                         uint32_t jitter, bool meets)
+{
+    uint32_t end = f->lit.lighting->fog->far, t = first_t(f, jitter);
+    uint32_t edge = time_of_edge(f, unit);
+    end = edge < end ? edge : end;
+#if BRUME_WITH_SURFACE
+    uint32_t surface = brume_surface_distance(f, x, y);
+    end = surface < end ? surface : end;
+#else
+    (void)x, (void)y;
+#endif
+    ray->samples = brume_samples_before(end, t, f->step);
+    ray->before = meets ? (ray->t - t) / f->step : ray->samples;
+    if (!meets) {
+        set_moves(ray, f, unit);
+        ray->count = 0;
+    }
+    if (ray->before > ray->samples)
+        ray->before = ray->samples;
+    if (ray->count > ray->samples - ray->before)
+        ray->count = ray->samples - ray->before;
+    ray->t = t;
+    return ray->samples > 0;
+}
+#endif
+
+/* The end of what the lattice in the pool leaves; false when there is no
+ * sample. */
+static bool end_ray(struct brume_ray *ray, const struct brume_frame *f,
+                    const int32_t unit[3], uint32_t x, uint32_t y,
+                    uint32_t jitter, bool meets)
+{
+    (void)ray, (void)f, (void)unit, (void)x, (void)y, (void)jitter;
+#if BRUME_WITH_FOG
+    if (brume_has_fog(f))
+        return begin_in_fog(ray, f, unit, x, y, jitter, meets);
+#endif
+#if BRUME_WITH_SURFACE
+    if (meets && brume_has_surface(f))
+        return cut_at_surface(ray, f, x, y);
+#endif
+    return meets;
+}
+
 bool brume_ray_begin(struct brume_ray *ray, const struct brume_frame *frame,
                      uint32_t x, uint32_t y)
 {
@@ -552,12 +631,17 @@ bool brume_ray_begin(struct brume_ray *ray, const struct brume_frame *frame,
         move_in_pixel(unit, f, x, y);
 #endif
     brume_normalise(unit);
-    if (!clip(f, unit, &t_in, &t_out) ||
-        !enter(ray, f, unit, view_jitter(f, x, y), t_in, t_out))
+    bool meets = clip(f, unit, &t_in, &t_out);
+    if (!meets && !brume_has_fog(f))
         return false;
-    for (int i = 0; i < 3; i++)
+    uint32_t jitter = view_jitter(f, x, y);
+    meets = meets && enter(ray, f, unit, jitter, t_in, t_out);
+    for (int i = 0; meets && i < 3; i++)
         ray->line.inverse[i] = brume_inverse_of_move(ray->line.move[i]);
-    ray->count = count_inside(ray, f);
+    if (meets)
+        ray->count = count_inside(ray, f);
+    if (!end_ray(ray, f, unit, x, y, jitter, meets))
+        return false;
     if (!f->skip)
         for (int i = 0; i < 3; i++)
             ray->line.inverse[i] = 0;

@@ -2,17 +2,19 @@
 /*
  * What the core's files share. A file calls only files above it:
  *
- *   brume_fixed    maths                brume_sky      behind the volume
- *   brume_tables   exp, sRGB, filmic    brume_march    the march
- *   brume_nrooks   N-rooks sets         brume_cache    the sun's cache
- *   brume_noise    jitter               brume_temporal history
- *   brume_phase    phase functions      brume_resolve  reprojection
- *   brume_asset    checking             brume_output   pixels
- *   brume_lattice  which rays           brume_filter   space (brume_filter.h)
+ *   brume_fixed    maths                brume_lit      the lit march
+ *   brume_tables   exp, sRGB, filmic    brume_sky      behind the volume
+ *   brume_nrooks   N-rooks sets         brume_march    the march
+ *   brume_noise    jitter               brume_cache    the sun's cache
+ *   brume_phase    phase functions      brume_temporal history
+ *   brume_asset    checking             brume_resolve  reprojection
+ *   brume_lattice  which rays           brume_output   pixels
+ *   brume_surface  surface, sun's map   brume_filter   space (brume_filter.h)
  *   brume_camera   rays                 brume_upsample resolution
- *   brume_lighting lighting of a frame  brume_show     rows to pixels
- *   brume_lit      the lit march        brume          frames
- *                                       brume_shadow   the shadow outwards
+ *   brume_fog      fog of a frame       brume_show     rows to pixels
+ *   brume_lighting lighting of a frame  brume          frames
+ *   brume_lamps    which lamps reach    brume_shadow   the shadow outwards
+ *                  what
  */
 #ifndef BRUME_INNER_H
 #define BRUME_INNER_H
@@ -48,6 +50,21 @@ struct brume_number brume_number_mul(struct brume_number a,
 struct brume_number brume_number_inverse(struct brume_number a);
 /* floor(a * 2^q), at most 2^32 - 1. */
 uint32_t brume_number_floor(struct brume_number a, int32_t q);
+
+#if BRUME_WITH_LIGHTING
+/* floor(a n / 2^down), at most 2^32 - 1; exact for n = 1. */
+BRUME_INLINE uint32_t brume_times(uint32_t a, uint32_t down,
+                                  struct brume_number n)
+{
+    uint32_t high = mul_hi_floor(a, n.m), low = a * n.m;
+    int32_t up = n.e + 32 - (int32_t)down; /* 1 has m = 2^31, e = -31 */
+    if (up <= 0)
+        return up > -32 ? high >> (uint32_t)-up : 0;
+    if (up > 31 || high >> (32u - (uint32_t)up) != 0)
+        return high | low ? 0xffffffffu : 0;
+    return high << (uint32_t)up | low >> (32u - (uint32_t)up);
+}
+#endif
 
 /* 1 - exp(-x) in Q0.32, x >= 0. Relative error < 2^-22, absolute < 2^-32
  * where that is more. */
@@ -191,7 +208,65 @@ int brume_lattice_check(const struct brume_scene *scene);
 void brume_lattice_begin(struct brume_frame *frame,
                          const struct brume_scene *scene);
 
+/// brume_surface.c ///
+
+#if BRUME_WITH_SURFACE
+bool brume_surface_is_good(const struct brume_surface *surface, uint32_t width);
+bool brume_sun_map_is_good(const struct brume_sun_map *map);
+
+/* Of a checked scene that has a sun map. False when it does not lie across the
+ * sun, or is no plane. */
+bool brume_sun_map_begin(struct brume_frame *frame,
+                         const struct brume_scene *scene);
+uint32_t brume_sun_map_sameness(const struct brume_frame *frame);
+
+BRUME_INLINE bool brume_has_surface(const struct brume_frame *f)
+{
+    return f->lit.lighting != NULL && f->lit.lighting->surface != NULL;
+}
+
+/* How far from the eye the surface is that ray (x, y) of the grid meets,
+ * Q16.16: samples from there on are behind it. All ones: none. */
+uint32_t brume_surface_distance(const struct brume_frame *frame, uint32_t x,
+                                uint32_t y);
+#endif
+
+/* How many of the samples at t, t + step, ... are nearer than `end`, Q16.16;
+ * all that there can be for an end of all ones. */
+BRUME_INLINE uint32_t brume_samples_before(uint32_t end, uint32_t t,
+                                           uint32_t step)
+{
+    if (end == 0xffffffffu)
+        return end;
+    return end > t ? (end - t - 1u) / step + 1u : 0;
+}
+
 /// brume_camera.c ///
+
+/* Is there fog, so that rays have samples outside of the pool? */
+BRUME_INLINE bool brume_has_fog(const struct brume_frame *f)
+{
+#if BRUME_WITH_FOG
+    return f->lit.fog.on;
+#else
+    (void)f;
+    return false;
+#endif
+}
+
+/* out = a x b, of vectors of at most unit length, Q2.30. */
+static inline void brume_cross(int32_t out[3], const int32_t a[3],
+                               const int32_t b[3])
+{
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        out[i] = mul_both_signed_round(a[j], b[k], 2) -
+                 mul_both_signed_round(a[k], b[j], 2);
+    }
+}
+
+#define BRUME_RAY_HAS_T \
+    (BRUME_WITH_DEPTH || BRUME_WITH_FOG || BRUME_WITH_SURFACE)
 
 /* The lattice of one ray inside the pool. Positions carry the lookup's bias
  * (brume_frame.eye): 1/2 voxel for nearest, so that truncation finds the
@@ -202,8 +277,13 @@ struct brume_ray {
     struct brume_line line;
     uint32_t count; /* samples in the pool */
     struct brume_light_ray light;
-#if BRUME_WITH_DEPTH
+#if BRUME_RAY_HAS_T
     uint32_t t; /* distance of the first sample from the eye, Q16.16 */
+#endif
+#if BRUME_WITH_FOG
+    /* With fog the first sample is that of the eye, number 0: this many lie
+     * before those in the pool, and this many are there in all. */
+    uint32_t before, samples;
 #endif
 #if BRUME_WITH_LIGHTING /* when frame.lit.on */
     int32_t unit[3];    /* direction, Q2.30 */
@@ -224,7 +304,7 @@ void brume_pixel_direction(const struct brume_frame *frame, uint32_t x,
 void brume_grid_direction(const struct brume_frame *frame, uint32_t x,
                           uint32_t y, int32_t out[3]);
 
-#if BRUME_WITH_AMBIENT || BRUME_WITH_SKY
+#if BRUME_WITH_AMBIENT || BRUME_WITH_SKY || BRUME_WITH_FOG || BRUME_WITH_SURFACE
 /* Q2.30 . Q2.30, of two unit vectors: -1 .. 1. */
 BRUME_INLINE int32_t brume_dot(const int32_t a[3], const int32_t b[3])
 {
@@ -240,9 +320,24 @@ BRUME_INLINE int32_t brume_dot(const int32_t a[3], const int32_t b[3])
 bool brume_rays_miss(const struct brume_frame *frame, uint32_t x, uint32_t y,
                      uint32_t n);
 
-/* The ray of pixel (x, y). False when no sample falls in the pool. */
+/* The ray of pixel (x, y). False when it has no sample: none in the pool, or
+ * with fog anywhere. */
 bool brume_ray_begin(struct brume_ray *ray, const struct brume_frame *frame,
                      uint32_t x, uint32_t y);
+
+/* The position at distance t, Q16.16, in a direction; modulo 2^32. */
+static inline void brume_ray_place(const struct brume_frame *f,
+                                   const int32_t unit[3], uint32_t t,
+                                   uint32_t out[3])
+{
+    for (int i = 0; i < 3; i++) {
+        uint32_t m = magnitude(unit[i]);
+        /* Q30 * Q16 -> Q16, rounded */
+        uint32_t way =
+            (mul_hi_floor(m, t) << 2 | (m * t) >> 30) + ((m * t) >> 29 & 1u);
+        out[i] = (uint32_t)f->eye[i] + (unit[i] < 0 ? 0u - way : way);
+    }
+}
 
 #if BRUME_WITH_CONE
 /* What sample i of a cone's n stands for: the `length` light steps, at least
@@ -276,7 +371,21 @@ void brume_light_begin(struct brume_light_ray *light,
 /* floor((2^32 - 1) / |move|), all ones for no move. */
 uint32_t brume_inverse_of_move(int32_t move);
 
-/// brume_lit.c ///
+/// brume_fog.c ///
+
+#if BRUME_WITH_FOG
+/* Is that a fog that a frame can have? */
+bool brume_fog_is_good(const struct brume_fog *fog);
+
+/* Of a checked scene that has fog; sun, zenith and camera are known. */
+void brume_fog_begin(struct brume_frame *frame,
+                     const struct brume_scene *scene);
+
+/* A word that changes with it. */
+uint32_t brume_fog_sameness(const struct brume_frame *frame);
+#endif
+
+/// brume_lighting.c ///
 
 #if BRUME_WITH_LIGHTING
 BRUME_INLINE bool brume_is_grey(const uint32_t c[3])
@@ -301,6 +410,9 @@ BRUME_INLINE bool brume_scene_has_colour(const struct brume_scene *s)
     bool grey = brume_is_grey(l->sun_colour);
     for (uint32_t j = 0; j < brume_ambient_colours(l->ambient); j++)
         grey = grey && brume_is_grey(l->ambient_colour[j]);
+    /* also of scenes that nobody has checked yet */
+    for (uint32_t i = 0; l->lamps != NULL && i < l->lamp_count; i++)
+        grey = grey && i < BRUME_MAX_LAMPS && brume_is_grey(l->lamps[i].colour);
     return !grey;
 }
 
@@ -319,24 +431,44 @@ int brume_lit_check(const struct brume_scene *scene);
  * it. */
 int brume_lit_begin(struct brume_frame *frame, const struct brume_scene *scene);
 
+/* albedo * colour * exposure, Q16.16, each channel; colour <= 256. */
+void brume_lit_colour(uint32_t out[3], const struct brume_scene *scene,
+                      const uint32_t colour[3]);
+
 /* Mips of light = cone: of a segment of 2^m voxels' length that of level m +
  * this. Measured: docs/light.md. */
 #define BRUME_CONE_LEVEL (-1)
 
-#if BRUME_WITH_AMBIENT
-/* A position along zenith, Q17.14. */
+#if BRUME_WITH_AMBIENT || BRUME_WITH_FOG
+/* A position along zenith, Q17.14: anywhere within +-32768 voxels. */
 BRUME_INLINE int32_t brume_along_zenith(const struct brume_frame *f,
                                         const uint32_t p[3])
 {
     int32_t sum = 0; /* three of at most 2^29 */
     for (int i = 0; i < 3; i++)
-        sum += mul_signed_round(f->lit.zenith[i], p[i], 0);
+        sum += mul_both_signed_round(f->lit.zenith[i], as_signed(p[i]), 0);
     return sum;
 }
 #endif
 
 /* A word that changes with the light. */
 uint32_t brume_lit_sameness(const struct brume_frame *frame);
+
+/// brume_lamps.c ///
+
+#if BRUME_WITH_LAMPS
+/* Checks the scene's lamps. */
+int brume_lamps_check(const struct brume_scene *scene);
+
+/* Fills the clusters of a checked scene; camera and lighting are known. */
+void brume_lamps_begin(struct brume_frame *frame,
+                       const struct brume_scene *scene);
+
+/* A word that changes with the lamps, wherever the camera is. */
+uint32_t brume_lamps_sameness(const struct brume_frame *frame);
+#endif
+
+/// brume_lit.c ///
 
 /* Density at a position, as brume_lookup.h's density_at. */
 bool brume_lit_density(const struct brume_frame *frame, uint32_t x, uint32_t y,

@@ -170,6 +170,21 @@ BRUME_INLINE uint32_t transmittance_of(const struct brume_tau *t, uint32_t sum)
     return (uint32_t)brume_exp_coarse[tau >> 8] * brume_exp_fine[tau & 255u];
 }
 
+#if BRUME_WITH_FOG
+/* The same with `more` added to tau, Q13, < 2^30. */
+BRUME_INLINE uint32_t transmittance_beyond(const struct brume_tau *t,
+                                           uint32_t sum, uint32_t more)
+{
+    if (sum > t->limit)
+        return 0;
+    uint32_t tau = mul_hi_floor(sum << t->shift, t->m) + more;
+    if (tau > 131070u)
+        return 0;
+    tau = (tau + 1u) >> 1;
+    return (uint32_t)brume_exp_coarse[tau >> 8] * brume_exp_fine[tau & 255u];
+}
+#endif
+
 /// Both ///
 
 /* 1 - exp(-sigma_t * step) of a density, Q0.32. */

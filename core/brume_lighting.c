@@ -50,7 +50,11 @@ static bool is_missing(const struct brume_scene *s)
     return (!BRUME_WITH_COLOUR && brume_scene_has_colour(s)) ||
            (!BRUME_WITH_AMBIENT && l->ambient != BRUME_AMBIENT_NONE) ||
            (!BRUME_WITH_SKY && (l->sky || l->haze != 0)) ||
-           (!BRUME_WITH_DITHER && l->dither);
+           (!BRUME_WITH_FOG && l->fog != NULL) ||
+           (!BRUME_WITH_SURFACE &&
+            (l->surface != NULL || l->sun_map != NULL)) ||
+           (!BRUME_WITH_DITHER && l->dither) ||
+           (!BRUME_WITH_LAMPS && l->lamp_count != 0);
 }
 
 static bool cache_is_good(const struct brume_lighting *l)
@@ -58,6 +62,24 @@ static bool cache_is_good(const struct brume_lighting *l)
     const struct brume_cache *c = l != NULL ? l->cache : NULL;
     return c != NULL && c->from != NULL && (c->blend == 0 || c->to != NULL) &&
            c->spacing_log2 >= 1 && c->spacing_log2 <= 3 && c->blend <= 0x10000u;
+}
+
+/* Fog, surface, sun map: what is there besides the volume. */
+static bool world_is_good(const struct brume_scene *s)
+{
+    const struct brume_lighting *l = s->lighting;
+    bool good = true;
+    (void)l;
+#if BRUME_WITH_FOG
+    good = good && (l->fog == NULL || brume_fog_is_good(l->fog));
+#endif
+#if BRUME_WITH_SURFACE
+    good =
+        good &&
+        (l->surface == NULL || brume_surface_is_good(l->surface, s->width)) &&
+        (l->sun_map == NULL || brume_sun_map_is_good(l->sun_map));
+#endif
+    return good;
 }
 
 int brume_lit_check(const struct brume_scene *scene)
@@ -72,15 +94,16 @@ int brume_lit_check(const struct brume_scene *scene)
         (l->exposure != 0 &&
          (l->exposure < 0x100u || l->exposure > 16u << 16)) ||
         !colours_are_good(&l->sun_colour, 1) || !ambient_is_good(l) ||
-        !sky_is_good(l) || (l->haze != 0 && l->haze < 0x10000u))
+        !sky_is_good(l) || (l->haze != 0 && l->haze < 0x10000u) ||
+        !world_is_good(scene))
         return BRUME_ERR_SCENE;
     return is_missing(scene) ? BRUME_ERR_FEATURE : BRUME_OK;
 }
 
-/* albedo * colour * exposure, Q16.16, each channel */
-static void set_colour(uint32_t out[3], const struct brume_scene *s,
-                       const uint32_t colour[3])
+void brume_lit_colour(uint32_t out[3], const struct brume_scene *scene,
+                      const uint32_t colour[3])
 {
+    const struct brume_scene *s = scene;
     uint32_t exposure = s->lighting->exposure;
     for (int c = 0; c < 3; c++) {
         /* Q16 * Q16 -> Q16; the first factor is at most 1 */
@@ -163,7 +186,7 @@ static int set_ambient(struct brume_frame *f, const struct brume_scene *s)
     if (l->visibility == BRUME_SKY_BAKED && f->volume->sky == NULL)
         return BRUME_ERR_SECTION;
     for (uint32_t j = 0; j < n; j++)
-        set_colour(f->lit.ambient_colour[j], s, l->ambient_colour[j]);
+        brume_lit_colour(f->lit.ambient_colour[j], s, l->ambient_colour[j]);
     if (n == 6 && l->visibility != BRUME_SKY_SAMPLED)
         for (int c = 0; c < 3; c++) {
             uint32_t sum = 3; /* six of at most 2^24 */
@@ -195,7 +218,7 @@ int brume_lit_begin(struct brume_frame *frame, const struct brume_scene *scene)
     f->lit.on = brume_scene_is_lit(scene);
     f->lit.light = scene->light;
     f->lit.stochastic = scene->filter == BRUME_STOCHASTIC;
-#if BRUME_WITH_AMBIENT || BRUME_WITH_SKY
+#if BRUME_WITH_AMBIENT || BRUME_WITH_SKY || BRUME_WITH_FOG
     for (int i = 0; i < 3 && l != NULL; i++)
         f->lit.zenith[i] = l->zenith[i];
     if (!brume_normalise(f->lit.zenith))
@@ -216,7 +239,7 @@ int brume_lit_begin(struct brume_frame *frame, const struct brume_scene *scene)
     f->lit.octaves = l->octaves > 1 ? l->octaves : 1;
     for (uint32_t i = 0; i < f->lit.octaves; i++)
         f->lit.weight[i] = power_of(l->octave_b, i);
-    set_colour(f->lit.sun, scene, l->sun_colour);
+    brume_lit_colour(f->lit.sun, scene, l->sun_colour);
     if ((f->lit.sun[0] | f->lit.sun[1] | f->lit.sun[2]) == 0)
         f->lit.light = BRUME_NO_LIGHT;
     else if (l->phase != NULL)
@@ -236,6 +259,16 @@ int brume_lit_begin(struct brume_frame *frame, const struct brume_scene *scene)
 #endif
 #if BRUME_WITH_DITHER
     f->lit.dither = l->dither;
+#endif
+#if BRUME_WITH_SURFACE
+    if (l->sun_map != NULL && !brume_sun_map_begin(f, scene))
+        return BRUME_ERR_SCENE;
+#endif
+#if BRUME_WITH_FOG
+    for (uint32_t i = 0; i < f->lit.octaves; i++)
+        f->lit.fog.extinction[i] = power_of(l->octave_a, i);
+    if (l->fog != NULL)
+        brume_fog_begin(f, scene);
 #endif
 #if BRUME_WITH_AMBIENT
     f->lit.ambient = l->ambient;
@@ -259,6 +292,14 @@ uint32_t brume_lit_sameness(const struct brume_frame *frame)
             (l->tau[i].shift ^ l->weight[i]);
     for (int c = 0; c < 3; c++)
         h = h * 16777619u ^ l->sun[c];
+#if BRUME_WITH_FOG
+    if (l->fog.on)
+        h = h * 16777619u ^ brume_fog_sameness(frame);
+#endif
+#if BRUME_WITH_SURFACE
+    if (l->sun_map != NULL)
+        h = h * 16777619u ^ brume_sun_map_sameness(frame);
+#endif
 #if BRUME_WITH_AMBIENT
     h = h * 16777619u ^ (l->ambient | (uint32_t)l->visibility << 8);
     for (int j = 0; j < 6; j++)

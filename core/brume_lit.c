@@ -5,8 +5,12 @@
  * in brume_march.c, whose kernels serve scenes that need none of this. Where
  * a build has one format and one lookup, that branch is gone.
  */
+#include "brume_air.h"
 #include "brume_ambient.h"
+#include "brume_fog.h"
+#include "brume_lamps.h"
 #include "brume_sun.h"
+#include "brume_sun_map.h"
 
 #if BRUME_WITH_LIGHTING
 
@@ -93,18 +97,6 @@ uint32_t brume_lit_sun_sum(const struct brume_frame *frame, const uint32_t p[3])
 
 /// Ray ///
 
-/* a n / 2^down, at most 2^32 - 1; exact for n = 1. */
-static uint32_t times_number(uint32_t a, uint32_t down, struct brume_number n)
-{
-    uint32_t high = mul_hi_floor(a, n.m), low = a * n.m;
-    int32_t up = n.e + 32 - (int32_t)down; /* 1 has m = 2^31, e = -31 */
-    if (up <= 0)
-        return up > -32 ? high >> (uint32_t)-up : 0;
-    if (up > 31 || high >> (32u - (uint32_t)up) != 0)
-        return high | low ? 0xffffffffu : 0;
-    return high << (uint32_t)up | low >> (32u - (uint32_t)up);
-}
-
 /* Sum of octaves with their phase, Q29 less the headroom; held to what fits. */
 static uint32_t sun_light(const struct brume_frame *f, const struct gathered *g,
                           const int32_t unit[3])
@@ -117,8 +109,8 @@ static uint32_t sun_light(const struct brume_frame *f, const struct gathered *g,
         if (f->lit.weight[i] != 0xffffffffu)
             a = mul_hi_floor(a, f->lit.weight[i]);
         if (peaked)
-            a = times_number(a, f->lit.headroom,
-                             brume_phase_value(&l->phase[i], u));
+            a = brume_times(a, f->lit.headroom,
+                            brume_phase_value(&l->phase[i], u));
         sum = sum + a < sum ? 0xffffffffu : sum + a;
     }
     return sum;
@@ -139,9 +131,11 @@ static uint32_t channel_of(const struct brume_frame *f,
     for (uint32_t j = 0; j < 6 && f->lit.ambient != BRUME_AMBIENT_NONE; j++)
         if (g->sky[j] != 0)
             light += scaled(g->sky[j], f->lit.ambient_colour[j][c]);
-#else
-    (void)g;
 #endif
+#if BRUME_WITH_LAMPS
+    light += (g->lamp[c] >> 13) + (g->lamp[c] >> 12 & 1u);
+#endif
+    (void)g;
     return light < BRUME_MAX_LIGHT ? light : BRUME_MAX_LIGHT;
 }
 
@@ -201,73 +195,200 @@ static void move_lookup(struct gathered *g, const struct brume_ray *ray,
 }
 #endif
 
-/* A sample's light: `lost` of the ray's transmittance, Q1.31, scatters what
- * `sum` lets through of the sun, and of the sky. */
-static void add_light(const struct brume_frame *f, struct gathered *g,
-                      const struct brume_ray *ray, const uint32_t p[3],
-                      uint32_t lost, uint32_t sum, const struct kernel *k)
+/* A march under way. */
+struct walk {
+    struct gathered g;
+    uint32_t p[3];          /* the sample, Q16.16 */
+    uint32_t index;         /* and its number, from the ray's first */
+    uint32_t transmittance; /* Q1.31 */
+    uint32_t reach;         /* of the light ray */
+    bool inside;            /* of the pool? */
+#if BRUME_WITH_DEPTH
+    uint32_t where; /* sum of moments */
+#endif
+};
+
+/* What is at a sample. */
+struct matter {
+    uint32_t d;       /* density, in codes of the kernel */
+    uint32_t opacity; /* Q0.32 */
+    bool any;
+#if BRUME_WITH_FOG
+    struct fog fog;
+#endif
+};
+
+/* Looks for it; how many samples there are to the next that may hold
+ * something. */
+static uint32_t find_matter(const struct brume_frame *f,
+                            const struct brume_ray *ray, const struct walk *w,
+                            struct matter *at, const struct kernel *k)
 {
+    const uint32_t *p = w->p;
+    uint32_t m = 1;
+    at->d = at->opacity = 0;
+    at->any = false;
+    if (w->inside && !find_density(f, p[0], p[1], p[2], &at->d, *k)) {
+        m = leap(f, &ray->line, p[0], p[1], p[2], at->d, *k);
+        at->d = 0;
+    } else if (at->d > f->min_density) {
+        at->any = true;
+        at->opacity = opacity(f, at->d, is_narrow_frame(f));
+    }
+#if BRUME_WITH_FOG
+    if (brume_has_fog(f)) {
+        m = 1;
+        at->fog = fog_at(f, p);
+        at->any = at->any || at->fog.all != 0;
+        at->opacity += mul_hi_floor(fog_opacity(f, at->fog.all), ~at->opacity);
+    }
+#endif
+    return m;
+}
+
+/* Sunlight that `lost` of the ray's transmittance scatters, Q1.31. */
+static void add_sun(const struct brume_frame *f, const struct brume_ray *ray,
+                    struct walk *w, const struct matter *at, uint32_t lost,
+                    const struct kernel *k)
+{
+    uint32_t sum = 0;
+#if BRUME_WITH_SURFACE
+    if (f->lit.sun_map != NULL) { /* Q31 * Q16 -> Q31 */
+        uint32_t share = sun_map_light(f, w->p);
+        if (share == 0)
+            return;
+        if (share < 0x10000u)
+            lost = mul_hi_floor(lost, share << 16);
+    }
+#endif
+#if BRUME_WITH_FOG
+    if (brume_has_fog(f)) {
+        uint32_t depth = fog_depth(f, &ray->light, w->p, &at->fog);
+        sum = w->inside ? sun_sum(f, &ray->light, w->p, at->d, &w->reach, k)
+                        : sun_sum_outside(f, &ray->light, w->p, k);
+        for (uint32_t i = 0; i < f->lit.octaves; i++) {
+            uint32_t a = f->lit.fog.extinction[i];
+            uint32_t more = a == 0xffffffffu ? depth : mul_hi_floor(depth, a);
+            w->g.sun[i] += mul_hi_floor(
+                lost, transmittance_beyond(&f->lit.tau[i], sum, more));
+        }
+        return;
+    }
+#endif
+    sum = sun_sum(f, &ray->light, w->p, at->d, &w->reach, k);
     for (uint32_t i = 0; i < f->lit.octaves; i++)
-        g->sun[i] += mul_hi_floor(lost, transmittance_of(&f->lit.tau[i], sum));
+        w->g.sun[i] +=
+            mul_hi_floor(lost, transmittance_of(&f->lit.tau[i], sum));
+}
+
+/* Light and loss at a sample that holds something. */
+static void add_light(const struct brume_frame *f, const struct brume_ray *ray,
+                      struct walk *w, const struct matter *at,
+                      const struct kernel *k)
+{
+    uint32_t lost = mul_hi_floor(w->transmittance, at->opacity);
+    BRUME_TALLY(lit_samples, 1);
+    add_sun(f, ray, w, at, lost, k);
 #if BRUME_WITH_AMBIENT
     if (f->lit.ambient != BRUME_AMBIENT_NONE)
-        add_sky(f, g, ray, p, lost, k);
-#else
-    (void)ray, (void)p, (void)k;
+        add_sky(f, &w->g, ray, w->p, lost, k, w->inside);
 #endif
-    g->lit++;
+#if BRUME_WITH_LAMPS
+    if (f->lit.clusters != NULL)
+        add_lamps(f, &w->g, ray, w->p, lost, k);
+#endif
+    w->g.lit++;
+    w->transmittance -= lost;
+#if BRUME_WITH_DEPTH
+    w->where += moment(lost, w->index);
+#endif
 }
+
+/* The next n samples, all of them in the pool or none. False when too little is
+ * left to go on. */
+static bool march_part(const struct brume_frame *f, const struct brume_ray *ray,
+                       struct walk *w, uint32_t n, const struct kernel *k)
+{
+    for (;;) {
+        struct matter at;
+        BRUME_TALLY(view_samples, 1);
+#if BRUME_WITH_STOCHASTIC
+        if (f->lit.stochastic)
+            move_lookup(&w->g, ray, w->index);
+#endif
+        uint32_t m = find_matter(f, ray, w, &at, k);
+        if (at.any) {
+            add_light(f, ray, w, &at, k);
+            if (w->transmittance < f->min_transmittance)
+                return false;
+        }
+        if (m >= n)
+            return true;
+        n -= m;
+        w->index += m;
+        for (int i = 0; i < 3; i++)
+            w->p[i] += m * (uint32_t)ray->line.move[i];
+    }
+}
+
+#if BRUME_WITH_FOG
+/* Samples that are found by adding up moves of 2^-17 voxels' error each. */
+#define MOST_MOVES 4096u
+
+/* Before the pool, in it, behind it. Each part begins where its first sample
+ * is, to the bit. */
+static void march_in_fog(const struct brume_frame *f,
+                         const struct brume_ray *ray, struct walk *w,
+                         const struct kernel *k)
+{
+    uint32_t behind = ray->before + ray->count, n;
+    for (uint32_t at = 0; at < ray->samples; at += n) {
+        w->index = at;
+        w->inside = at >= ray->before && at < behind;
+        n = (w->inside          ? behind
+             : at < ray->before ? ray->before
+                                : ray->samples) -
+            at;
+        if (w->inside) {
+            for (int i = 0; i < 3; i++)
+                w->p[i] = ray->position[i];
+        } else {
+            n = n < MOST_MOVES ? n : MOST_MOVES;
+            brume_ray_place(f, ray->unit, ray->t + at * f->step, w->p);
+        }
+        if (!march_part(f, ray, w, n, k))
+            return;
+    }
+}
+#endif
 
 void brume_lit_march(const struct brume_frame *frame,
                      const struct brume_ray *ray, struct brume_radiance *out)
 {
     const struct brume_frame *f = frame;
     static const struct gathered k_none;
-    struct gathered g = k_none;
-    const struct kernel k = kernel_of(&g);
-    const struct brume_line *line = &ray->line;
-    uint32_t p[3] = {ray->position[0], ray->position[1], ray->position[2]};
-    uint32_t transmittance = 1u << 31; /* Q1.31 */
-    uint32_t left = ray->count, reach = 0, m, d;
-#if BRUME_WITH_DEPTH
-    uint32_t where = 0;
+    struct walk w = {.g = k_none, .transmittance = 1u << 31, .inside = true};
+    const struct kernel k = kernel_of(&w.g);
+#if BRUME_WITH_LAMPS
+    if (f->lit.clusters != NULL)
+        begin_lamps(f, &w.g, ray);
 #endif
     BRUME_TALLY(rays_in_pool, 1);
-    for (;;) {
-        m = 1;
-        BRUME_TALLY(view_samples, 1);
-#if BRUME_WITH_STOCHASTIC
-        if (f->lit.stochastic)
-            move_lookup(&g, ray, ray->count - left);
+    for (int i = 0; i < 3; i++)
+        w.p[i] = ray->position[i];
+#if BRUME_WITH_FOG
+    if (brume_has_fog(f))
+        march_in_fog(f, ray, &w, &k);
+    else
 #endif
-        if (!find_density(f, p[0], p[1], p[2], &d, k)) {
-            m = leap(f, line, p[0], p[1], p[2], d, k);
-        } else if (d > f->min_density) {
-            BRUME_TALLY(lit_samples, 1);
-            uint32_t lost =
-                mul_hi_floor(transmittance, opacity(f, d, is_narrow_frame(f)));
-            uint32_t sum = sun_sum(f, &ray->light, p, d, &reach, &k);
-            add_light(f, &g, ray, p, lost, sum, &k);
-            transmittance -= lost;
-#if BRUME_WITH_DEPTH
-            where += moment(lost, ray->count - left);
-#endif
-            if (transmittance < f->min_transmittance)
-                break;
-        }
-        if (m >= left)
-            break;
-        left -= m;
-        for (int i = 0; i < 3; i++)
-            p[i] += m * (uint32_t)line->move[i];
-    }
+        march_part(f, ray, &w, ray->count, &k);
 #if BRUME_WITH_DEPTH
     out->depth = 0;
     if (f->depth)
         out->depth =
-            brume_mean_depth(f, ray->t, where, (1u << 31) - transmittance);
+            brume_mean_depth(f, ray->t, w.where, (1u << 31) - w.transmittance);
 #endif
-    brume_lit_finish(f, &g, ray->unit, transmittance, out);
+    brume_lit_finish(f, &w.g, ray->unit, w.transmittance, out);
 }
 
 #endif

@@ -10,6 +10,11 @@
 
 /// View ///
 
+uint32_t brume_depth_of(uint32_t distance)
+{
+    return brume_depth_code(distance);
+}
+
 #if BRUME_WITH_DEPTH
 uint32_t brume_mean_depth(const struct brume_frame *frame, uint32_t t,
                           uint32_t moment, uint32_t lost)
@@ -244,6 +249,10 @@ static void set_light(struct brume_frame *f, const struct brume_scene *s)
     if (s->light == BRUME_CONE) /* the middle of each segment */
         jitter = 0x8000u;
 #endif
+#if BRUME_WITH_FOG
+    if (s->light == BRUME_CACHE) /* the same: of shapes of fog */
+        jitter = 0x8000u;
+#endif
     f->light_samples = s->light == BRUME_NO_LIGHT ? 0 : s->light_samples;
 #if BRUME_WITH_CACHE
     if (s->light == BRUME_CACHE)
@@ -281,6 +290,9 @@ static void set_lit_taus(struct brume_frame *f, const struct brume_scene *s,
     f->lit.sun_unit = depth;
 #endif
     depth = brume_number_mul(depth, scale);
+#if BRUME_WITH_LAMPS
+    f->lit.lamp_depth = brume_number_mul(unit, scale);
+#endif
     for (uint32_t i = 0; i < f->lit.octaves; i++) {
         set_tau(&f->lit.tau[i], depth);
         if (l != NULL)
@@ -339,6 +351,9 @@ int brume_march_begin(struct brume_frame *frame,
     set_tau(&f->tau, brume_number_mul(unit, light_step));
 #if BRUME_WITH_LIGHTING
     set_lit_taus(f, scene, unit);
+#endif
+#if BRUME_WITH_LAMPS
+    brume_lamps_begin(f, scene);
 #endif
     set_light(f, scene);
     return BRUME_OK;

@@ -77,11 +77,12 @@ static inline uint32_t mean_at(const struct brume_frame *f, struct mip *m,
 
 /* Density along the segments that samples stand for, times their length in
  * light steps: [0, 1) with the sample's own density d, then those of
- * brume_segment_of. < 2^27: a 16-bit code times at most 1280. */
+ * brume_segment_of. < 2^27: a 16-bit code times at most 1280. From inside of
+ * the pool it ends where the pool does. */
 static inline uint32_t sum_cone(const struct brume_frame *f,
                                 const struct brume_light_ray *light,
                                 const uint32_t from[3], uint32_t d,
-                                const struct kernel *k)
+                                const struct kernel *k, bool inside)
 {
     const struct brume_volume *v = f->volume;
     struct mip mip = {3,
@@ -94,8 +95,11 @@ static inline uint32_t sum_cone(const struct brume_frame *f,
         for (int a = 0; a < 3; a++)
             p[a] = from[a] + (uint32_t)light->first[a] * s.length +
                    (uint32_t)f->light_line.move[a] * s.before;
-        if (p[0] >= f->limit[0] || p[1] >= f->limit[1] || p[2] >= f->limit[2])
-            break;
+        if (p[0] >= f->limit[0] || p[1] >= f->limit[1] || p[2] >= f->limit[2]) {
+            if (inside)
+                break;
+            continue;
+        }
         sum += s.length * mean_at(f, &mip, p[0], p[1], p[2],
                                   f->lit.cone_level + (int32_t)s.log2, k);
     }
@@ -152,7 +156,8 @@ static inline uint32_t sum_cache(const struct brume_frame *f,
 }
 #endif
 
-/* Optical depth towards the sun, in units of lit.tau. */
+/* Optical depth towards the sun from inside of the pool, in units of lit.tau.
+ */
 static inline uint32_t sun_sum(const struct brume_frame *f,
                                const struct brume_light_ray *light,
                                const uint32_t p[3], uint32_t d, uint32_t *reach,
@@ -164,7 +169,7 @@ static inline uint32_t sun_sum(const struct brume_frame *f,
     case BRUME_UNIFORM: return sum_uniform(f, light, x, y, z, *k);
 #endif
 #if BRUME_WITH_CONE
-    case BRUME_CONE: return sum_cone(f, light, p, d, k);
+    case BRUME_CONE: return sum_cone(f, light, p, d, k, true);
 #endif
 #if BRUME_WITH_CACHE
     case BRUME_CACHE: return sum_cache(f, p, k->moved);

@@ -32,6 +32,12 @@ static const char k_help[] =
     "                    dither. rgba8888, light over a clear background, "
     "goes\n"
     "                    into .png and .apng\n"
+    "  --over PICTURE    what is behind, in place of background and sky: of "
+    "the\n"
+    "                    scene's size, .png .ppm .pgm in sRGB or .pfm, "
+    "linear;\n"
+    "                    light and transmittance are composed in linear "
+    "light\n"
     "  -o OUT            .pfm holds linear radiance, whatever `output` says\n"
     "\n"
     "Sequences:\n"
@@ -154,9 +160,9 @@ static int read_pixels(struct sequence *s, const char *value)
 
 static bool takes_value(const char *name)
 {
-    static const char *const k_names[] = {"-o",        "--scene",  "--set",
-                                          "--threads", "--path",   "--frames",
-                                          "--fps",     "--kernel", "--pixels"};
+    static const char *const k_names[] = {
+        "-o",       "--scene", "--set",    "--threads", "--path",
+        "--frames", "--fps",   "--kernel", "--pixels",  "--over"};
     for (size_t i = 0; i < sizeof k_names / sizeof *k_names; i++)
         if (strcmp(name, k_names[i]) == 0)
             return true;
@@ -183,6 +189,8 @@ static int read_option(struct options *o, const char *name, const char *value)
         return read_pixels(&o->sequence, value);
     if (strcmp(name, "-o") == 0)
         o->sequence.out = value;
+    else if (strcmp(name, "--over") == 0)
+        o->sequence.over = value;
     else if (strcmp(name, "--path") == 0)
         o->path = value;
     else if (strcmp(name, "--scene") == 0)

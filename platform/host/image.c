@@ -176,12 +176,14 @@ static int read_stream(FILE *f, struct image_file *file, char *err,
     return 0;
 }
 
-static int read_file(const char *path, struct image_file *file, char *err,
-                     size_t err_size)
+int image_get(const char *path, struct image_file *file, char *err,
+              size_t err_size)
 {
     FILE *f = fopen(path, "rb");
     int status;
 
+    file->data = NULL;
+    file->size = 0;
     if (!f)
         return image_error(err, err_size, "cannot open: %s", strerror(errno));
     status = read_stream(f, file, err, err_size);
@@ -213,7 +215,7 @@ int image_read(const char *path, struct image *image, char *err,
     memset(image, 0, sizeof *image);
     if (image_format_of(path, &format, err, err_size))
         return -1;
-    status = read_file(path, &file, message, sizeof message);
+    status = image_get(path, &file, message, sizeof message);
     if (status == 0)
         status = decode(format, &file, image, message, sizeof message);
     free(file.data);

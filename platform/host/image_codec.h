@@ -46,6 +46,10 @@ int image_pnm_encode(const struct image *image, int channels,
 int image_pfm_encode(const struct image *image, struct image_file *file,
                      char *err, size_t err_size);
 
+/* A whole file, of at most IMAGE_MAX_BYTES; messages without the path. */
+int image_get(const char *path, struct image_file *file, char *err,
+              size_t err_size);
+
 /* The two halves of image_write_as: a picture as a file of the format, and
  * that file in its place (see out_file.h). Messages without the path. */
 int image_encode(enum image_format format, const struct image *image,

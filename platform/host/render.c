@@ -23,7 +23,8 @@
 struct scratch {
     struct brume_radiance rays[TILE_WIDTH * TILE_HEIGHT];
     struct profile profile;
-    void *work; /* of brume_show_rect */
+    struct brume_frame frame; /* with one pixel's background */
+    void *work;               /* of brume_show_rect */
     size_t work_size;
 };
 
@@ -145,12 +146,48 @@ static struct profile *profile_of(struct renderer *r, unsigned worker,
     return &r->scratch[worker].profile;
 }
 
+/* How many pixels from (x, y) on, at most n, have the same behind them, which
+ * becomes the frame's background. */
+static unsigned set_behind(const struct sweep *s, struct brume_frame *frame,
+                           unsigned x, unsigned y, unsigned n)
+{
+    const uint32_t(*over)[3] = s->target->over + (size_t)y * frame->width + x;
+    unsigned same = 1;
+    while (same < n && memcmp(over[0], over[same], sizeof *over) == 0)
+        same++;
+    for (int c = 0; c < 3; c++) /* without lighting 1 is the most */
+        frame->background[c] =
+            frame->lit.on ? over[0][c] : min_unsigned(over[0][c], 0x10000u);
+    return same;
+}
+
+/* Rays to pixels. */
+static void pack(struct sweep *s, unsigned worker, const struct tile *t)
+{
+    struct scratch *b = &s->renderer->scratch[worker];
+    const struct render_target *to = s->target;
+    if (to->over == NULL) {
+        note(s, brume_pack_rect(s->frame, b->rays, TILE_WIDTH, t->x, t->y, t->w,
+                                t->h, to->pixel_format,
+                                pixel_at(to, t->x, t->y), to->stride));
+        return;
+    }
+    b->frame = *s->frame;
+    for (unsigned y = 0; y < t->h; y++)
+        for (unsigned x = 0, n; x < t->w; x += n) {
+            n = set_behind(s, &b->frame, t->x + x, t->y + y, t->w - x);
+            note(s, brume_pack_rect(
+                        &b->frame, b->rays + y * TILE_WIDTH + x, TILE_WIDTH,
+                        t->x + x, t->y + y, n, 1, to->pixel_format,
+                        pixel_at(to, t->x + x, t->y + y), to->stride));
+        }
+}
+
 static void march_tile(void *arg, unsigned task, unsigned worker)
 {
     struct sweep *s = arg;
     struct renderer *r = s->renderer;
     struct brume_radiance *rays = r->scratch[worker].rays;
-    const struct render_target *to = s->target;
     struct tile t = tile_at(s, task);
     double now = 0;
     struct profile *p = profile_of(r, worker, &now);
@@ -158,9 +195,7 @@ static void march_tile(void *arg, unsigned task, unsigned worker)
                                  t.h, rays, TILE_WIDTH));
     now = profile_add(p, PASS_MARCH, now);
     if (s->plain)
-        note(s, brume_pack_rect(s->frame, rays, TILE_WIDTH, t.x, t.y, t.w, t.h,
-                                to->pixel_format, pixel_at(to, t.x, t.y),
-                                to->stride));
+        pack(s, worker, &t);
     else
         note(s, brume_store_rect(s->frame, r->state, t.x, t.y, t.w, t.h, rays,
                                  TILE_WIDTH));
@@ -179,17 +214,35 @@ static void resolve_tile(void *arg, unsigned task, unsigned worker)
     profile_add(p, PASS_RESOLVE, now);
 }
 
+/* The state to pixels. */
+static void show(struct sweep *s, unsigned worker, const struct tile *t)
+{
+    struct scratch *b = &s->renderer->scratch[worker];
+    const struct brume_state *state = s->renderer->state;
+    const struct render_target *to = s->target;
+    if (to->over == NULL) {
+        note(s, brume_show_rect(s->frame, state, t->x, t->y, t->w, t->h,
+                                to->pixel_format, pixel_at(to, t->x, t->y),
+                                to->stride, b->work, b->work_size));
+        return;
+    }
+    b->frame = *s->frame;
+    for (unsigned y = t->y; y < t->y + t->h; y++)
+        for (unsigned x = t->x, n; x < t->x + t->w; x += n) {
+            n = set_behind(s, &b->frame, x, y, t->x + t->w - x);
+            note(s, brume_show_rect(&b->frame, state, x, y, n, 1,
+                                    to->pixel_format, pixel_at(to, x, y),
+                                    to->stride, b->work, b->work_size));
+        }
+}
+
 static void show_tile(void *arg, unsigned task, unsigned worker)
 {
     struct sweep *s = arg;
-    struct scratch *b = &s->renderer->scratch[worker];
-    const struct render_target *to = s->target;
     struct tile t = tile_at(s, task);
     double now = 0;
     struct profile *p = profile_of(s->renderer, worker, &now);
-    note(s, brume_show_rect(s->frame, s->renderer->state, t.x, t.y, t.w, t.h,
-                            to->pixel_format, pixel_at(to, t.x, t.y),
-                            to->stride, b->work, b->work_size));
+    show(s, worker, &t);
     profile_add(p, PASS_SHOW, now);
 }
 
@@ -405,7 +458,7 @@ int renderer_draw(struct renderer *renderer, const struct brume_scene *scene,
 void render_frame(const struct brume_frame *frame, int pixel_format, void *dst,
                   size_t stride, int threads, bool progress)
 {
-    const struct render_target target = {pixel_format, dst, stride};
+    const struct render_target target = {pixel_format, dst, stride, NULL};
     struct renderer *r = renderer_new(threads, WIDE_SCALAR);
     if (r == NULL) { /* without memory it still draws, if slowly */
         brume_render_rect(frame, 0, 0, frame->width, frame->height,

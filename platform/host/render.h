@@ -15,11 +15,14 @@
 
 struct renderer;
 
-/* Where pixels go: rows `stride` bytes apart. */
+/* Where pixels go: rows `stride` bytes apart. And what is behind, in place of
+ * the scene's background, of the image's size (see backdrop.h); the scene must
+ * have no sky then, and a pixel at least 8 bits. NULL: nothing. */
 struct render_target {
     int pixel_format;
     void *dst;
     size_t stride;
+    const uint32_t (*over)[3];
 };
 
 /* `threads` is 1 .. POOL_MAX; the bytes do not depend on it, nor on the kernel

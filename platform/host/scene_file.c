@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "noises.h"
+#include "scene_files.h"
 #include "scene_keys.h"
 
 /// Lines ///
@@ -75,6 +76,24 @@ static int read_noise(struct scene_settings *settings, const char *path,
     return 0;
 }
 
+/* The value of a key, or the file that it names. */
+static int read_value(struct scene_settings *settings, int key,
+                      const char *value, const char *where, char *err,
+                      size_t err_size)
+{
+    if (key == SCENE_NOISE &&
+        read_noise(settings, value, where, err, err_size) != 0)
+        return -1;
+    if (key == SCENE_NOISE && settings->noise_file != NULL)
+        return 0;
+    if (scene_keys[key].kind == SCENE_IS_FILE)
+        return scene_file_load(key, value,
+                               &settings->file[key - SCENE_FILE_FIRST], where,
+                               err, err_size);
+    return scene_read_value(key, value, settings->value[key], where, err,
+                            err_size);
+}
+
 int scene_set(struct scene_settings *settings, const char *text,
               const char *where, char *err, size_t err_size)
 {
@@ -92,12 +111,7 @@ int scene_set(struct scene_settings *settings, const char *text,
     for (int i = 0; i < SCENE_KEYS; i++) {
         if (strcmp(scene_keys[i].name, name) != 0)
             continue;
-        if (i == SCENE_NOISE &&
-            read_noise(settings, value, where, err, err_size) != 0)
-            return -1;
-        if ((i != SCENE_NOISE || settings->noise_file == NULL) &&
-            scene_read_value(i, value, settings->value[i], where, err,
-                             err_size) != 0)
+        if (read_value(settings, i, value, where, err, err_size) != 0)
             return -1;
         settings->set[i] = true;
         snprintf(settings->where[i], sizeof settings->where[i], "%s", where);
@@ -153,6 +167,9 @@ int scene_fill(struct scene_settings *settings, const char *text, char *err,
         settings->set[i] = fresh.set[i];
         memcpy(settings->value[i], fresh.value[i], sizeof fresh.value[i]);
         memcpy(settings->where[i], fresh.where[i], sizeof fresh.where[i]);
+        if (scene_keys[i].kind == SCENE_IS_FILE)
+            settings->file[i - SCENE_FILE_FIRST] =
+                fresh.file[i - SCENE_FILE_FIRST];
     }
     return 0;
 }

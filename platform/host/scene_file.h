@@ -11,7 +11,8 @@
 
 #include "volume_file.h"
 
-struct scene_light; /* scene_light.h */
+struct scene_light;     /* scene_light.h */
+struct scene_file_data; /* scene_files.h */
 
 enum scene_key {
     SCENE_SIZE,
@@ -80,8 +81,19 @@ enum scene_key {
     SCENE_SUN_SIZE,
     SCENE_HAZE,
     SCENE_DITHER,
+    SCENE_LAMPS,
+    SCENE_FOG_DENSITY,
+    SCENE_FOG_BASE,
+    SCENE_FOG_FALLOFF,
+    SCENE_FOG_FAR,
+    SCENE_FOG_SHAPES, /* the first of scene_files.c's */
+    SCENE_SURFACE,
+    SCENE_SUN_MAP,
     SCENE_KEYS
 };
+
+#define SCENE_FILE_FIRST SCENE_FOG_SHAPES
+#define SCENE_FILE_KEYS 3
 
 #define SCENE_LINE_SIZE 512 /* of a `key = value`, with its end */
 #define SCENE_WHERE_SIZE 300
@@ -91,8 +103,9 @@ enum scene_key {
 struct scene_settings {
     bool set[SCENE_KEYS];
     double value[SCENE_KEYS][SCENE_VALUES];
-    const struct brume_noise_table *noise_file; /* or NULL */
-    char where[SCENE_KEYS][SCENE_WHERE_SIZE];   /* file:line, cut to fit */
+    const struct brume_noise_table *noise_file;          /* or NULL */
+    const struct scene_file_data *file[SCENE_FILE_KEYS]; /* or NULL */
+    char where[SCENE_KEYS][SCENE_WHERE_SIZE]; /* file:line, cut to fit */
 };
 
 /* One `key = value`; `where` is for messages. */

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "noises.h"
+#include "scene_lamps.h"
 #include "scene_phase.h"
 
 #define FAR 1e9 /* world coordinates; the pool's own limit comes later */
@@ -131,6 +132,25 @@ const struct scene_key_info scene_keys[SCENE_KEYS] = {
      "voxels in which the volume fades to 1/e; 0: never (0)"},
     {"dither", SCENE_IS_WORD, 0, 0, "off on",
      "of pixels with few bits, see --pixels (off)"},
+    {"lamps", SCENE_IS_LAMPS, 0, 0, scene_lamps_words,
+     "a lamp per line: X,Y,Z RADIUS SIZE COLOUR [spot X,Y,Z INNER OUTER] "
+     "[shadow SAMPLES] (none)"},
+    {"fog_density", SCENE_IS_NUMBER, 0, 0.999, NULL,
+     "extinction of fog per voxel, up to fog_base; 0: none (0)"},
+    {"fog_base", SCENE_IS_NUMBER, -FAR, FAR, NULL,
+     "world height above which it is thinner (0)"},
+    {"fog_falloff", SCENE_IS_NUMBER, 0, FAR, NULL,
+     "world height in which it thins to 1/e; 0: never (0)"},
+    {"fog_far", SCENE_IS_NUMBER, 0, FAR, NULL,
+     "world distance at which rays through fog end; 0: 32766 voxels (0)"},
+    {"fog_shapes", SCENE_IS_FILE, 0, 0, "none FILE",
+     "spheres and boxes of fog: lines `sphere X,Y,Z RADIUS DENSITY "
+     "[SOFTNESS]`, `box X,Y,Z HALF,HALF,HALF DENSITY [SOFTNESS]` (none)"},
+    {"surface", SCENE_IS_FILE, 0, 0, "none FILE",
+     "where rays end: .pgm or .png of 16 bits, depth codes, of the picture's "
+     "size (none)"},
+    {"sun_map", SCENE_IS_FILE, 0, 0, "none FILE",
+     "what shades the sun: .pgm of 16 bits that says where it lies (none)"},
 };
 
 void scene_print_keys(FILE *to)
@@ -214,7 +234,9 @@ void scene_print_number(FILE *to, double value)
 bool scene_key_moves(int key)
 {
     return scene_keys[key].kind != SCENE_IS_WORD &&
-           scene_keys[key].kind != SCENE_IS_PHASE;
+           scene_keys[key].kind != SCENE_IS_PHASE &&
+           scene_keys[key].kind != SCENE_IS_LAMPS &&
+           scene_keys[key].kind != SCENE_IS_FILE;
 }
 
 static const char *wanted(enum scene_kind kind)
@@ -256,6 +278,8 @@ int scene_read_value(int key, const char *text, double out[SCENE_VALUES],
     }
     if (k->kind == SCENE_IS_PHASE)
         return scene_phase_read(text, out, where, err, err_size);
+    if (k->kind == SCENE_IS_LAMPS)
+        return scene_lamps_read(text, out, where, err, err_size);
     int n =
         scene_read_numbers(text, out, 3, k->kind == SCENE_IS_SIZE ? 'x' : '\0');
     bool whole = k->kind == SCENE_IS_INTEGER || k->kind == SCENE_IS_SIZE;

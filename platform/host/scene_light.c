@@ -6,7 +6,10 @@
 #include <string.h>
 
 #include "brume_noise_tables.h"
+#include "scene_air.h"
+#include "scene_files.h"
 #include "scene_keys.h"
+#include "scene_lamps.h"
 #include "scene_phase.h"
 
 /// Values ///
@@ -72,17 +75,20 @@ static void fill_values(const struct scene_settings *s,
     if (!s->set[SCENE_VISIBILITY_SAMPLES])
         l->value[SCENE_VISIBILITY_SAMPLES - SCENE_LIGHT_FIRST][0] =
             samples_across(file, value_of(l, SCENE_VISIBILITY_STEP)[0]);
+    memcpy(l->file, s->file, sizeof l->file);
 }
 
 /* Do they say more than a scene without them? */
 static bool says_something(const struct scene_light *l)
 {
     static const int k_on[] = {SCENE_AMBIENT, SCENE_SKY, SCENE_HAZE,
-                               SCENE_DITHER};
+                               SCENE_DITHER, SCENE_LAMPS};
     const double *sun = value_of(l, SCENE_SUN_COLOUR);
     for (size_t i = 0; i < sizeof k_on / sizeof k_on[0]; i++)
         if (value_of(l, k_on[i])[0] > 0)
             return true;
+    if (scene_air_says_something(l))
+        return true;
     return !scene_phase_is_isotropic(value_of(l, SCENE_PHASE)) ||
            value_of(l, SCENE_OCTAVES)[0] > 1 ||
            value_of(l, SCENE_EXPOSURE)[0] != 1 || sun[0] != 1 || sun[1] != 1 ||
@@ -177,6 +183,19 @@ static void make_sky(struct scene_light *l)
     out->dither = value_of(l, SCENE_DITHER)[0] > 0;
 }
 
+static int make_lamps(const struct volume_file *file, struct scene_light *l,
+                      char *err, size_t err_size)
+{
+    int count = scene_lamps_make(value_of(l, SCENE_LAMPS), file, l->lamps, err,
+                                 err_size);
+    if (count <= 0)
+        return count;
+    l->lighting.lamps = l->lamps;
+    l->lighting.lamp_count = (uint32_t)count;
+    l->lighting.clusters = &l->clusters;
+    return 0;
+}
+
 /// Scenes ///
 
 /* What the volume must hold for a word that was said. */
@@ -226,6 +245,9 @@ int scene_light_apply(const struct scene_settings *settings,
     make_ambient(file, light);
     make_sky(light);
     scene_direction(file, k_up, out->zenith);
+    if (make_lamps(file, light, err, err_size) != 0 ||
+        scene_air_apply(settings, file, scene, light, err, err_size) != 0)
+        return -1;
     return make_phase(light, settings->where[SCENE_PHASE], err, err_size);
 }
 
@@ -240,6 +262,8 @@ bool scene_light_has_colour(const struct scene_light *light)
     bool grey = is_grey(l->sun_colour);
     for (int i = 0; i < 6; i++)
         grey = grey && is_grey(l->ambient_colour[i]);
+    for (uint32_t i = 0; i < l->lamp_count; i++)
+        grey = grey && is_grey(l->lamps[i].colour);
     if (l->sky)
         grey = grey && is_grey(l->sky_zenith) && is_grey(l->sky_horizon) &&
                is_grey(l->sky_ground) &&
@@ -254,6 +278,13 @@ void scene_light_print(FILE *to, const struct scene_light *light)
         fprintf(to, "%s = ", scene_keys[key].name);
         switch (scene_keys[key].kind) {
         case SCENE_IS_PHASE: scene_phase_print(to, v); break;
+        case SCENE_IS_LAMPS: scene_lamps_print(to, v); break;
+        case SCENE_IS_FILE: {
+            const struct scene_file_data *data =
+                light->file[key - SCENE_FILE_FIRST];
+            fputs(data != NULL ? data->path : "none", to);
+            break;
+        }
         case SCENE_IS_COLOUR:
             for (int c = 0; c < 3; c++) {
                 fputs(c > 0 ? "," : "", to);

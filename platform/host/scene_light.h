@@ -18,6 +18,13 @@ struct scene_light {
     struct brume_lighting lighting;
     struct brume_phase phase[BRUME_MAX_OCTAVES];
     struct brume_cache cache; /* of light = cache: see sun_cache.h */
+    struct brume_lamp lamps[BRUME_MAX_LAMPS];
+    struct brume_clusters clusters; /* of the frame being drawn */
+    struct brume_fog fog;
+    struct brume_fog_shape fog_shapes[BRUME_MAX_FOG_SHAPES];
+    struct brume_surface surface;
+    struct brume_sun_map sun_map;
+    const struct scene_file_data *file[SCENE_FILE_KEYS]; /* or NULL */
     /* of the keys from SCENE_LIGHT_FIRST on, said or by default */
     double value[SCENE_LIGHT_KEYS][SCENE_VALUES];
 };

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "backdrop.h"
 #include "deflate.h"
 #include "panel.h"
 #include "pattern.h"
@@ -25,6 +26,7 @@ struct run {
     bool jumps; /* voxels lie elsewhere than those of the frame before */
     bool is_float;
     int pixel_format;
+    struct backdrop over;
     struct image image;
     void *packed; /* pixels that are not yet those of the image, or NULL */
     struct renderer *renderer;
@@ -123,6 +125,15 @@ static int scene_of(struct run *r, uint32_t frame, struct brume_scene *scene)
         return -1;
     if (r->is_float)
         scene->output = BRUME_LINEAR;
+    if (s->over != NULL &&
+        (scene->width != r->over.width || scene->height != r->over.height)) {
+        snprintf(r->err, r->err_size, "%.200s: %dx%d, and the scene is %dx%d",
+                 s->over, r->over.width, r->over.height, scene->width,
+                 scene->height);
+        return -1;
+    }
+    if (s->over != NULL) /* the picture has one */
+        r->light.lighting.sky = false;
     scene->cut = scene->cut || r->jumps;
     return 0;
 }
@@ -172,6 +183,8 @@ static bool is_grey(const struct run *r, const struct brume_scene *scene)
 {
     const struct path *path = r->sequence->path;
     const uint32_t *b = scene->background;
+    if (r->sequence->over != NULL)
+        return false;
     for (int key = 0; path != NULL && key < SCENE_KEYS; key++)
         if (path_sets(path, key) && (scene_keys[key].kind == SCENE_IS_COLOUR ||
                                      key == SCENE_SKY || key == SCENE_AMBIENT))
@@ -203,6 +216,12 @@ static int channels_of(int pixel_format)
 static int check_pixels(struct run *r, const struct movie_format *format)
 {
     const struct sequence *s = r->sequence;
+    if (s->over != NULL && s->pixels >= 0 &&
+        (brume_pixel_bytes(s->pixels) == 0 || s->pixels == BRUME_RGBA8888)) {
+        snprintf(r->err, r->err_size,
+                 "--over takes --pixels of 8 bits or more, without alpha");
+        return -1;
+    }
     bool png = format->kind == MOVIE_APNG ||
                (format->kind <= MOVIE_PICTURES && format->picture == IMAGE_PNG);
     if (s->pixels < 0 ||
@@ -239,7 +258,8 @@ static int draw(struct run *r, const struct brume_scene *scene)
 {
     const struct render_target target = {
         r->pixel_format, r->packed ? r->packed : r->image.u8,
-        brume_row_bytes(r->pixel_format, scene->width)};
+        brume_row_bytes(r->pixel_format, scene->width),
+        (const uint32_t(*)[3])r->over.linear};
     const uint16_t *wide = r->packed;
     double now = r->sequence->profile ? profile_process() : 0;
     if (sun_cache_prepare(&r->sun, renderer_pool(r->renderer), &r->file.volume,
@@ -358,6 +378,9 @@ static int prepare(struct run *r, struct movie_format *format)
                  r->is_float ? "a .pfm" : "a film on stdout");
         return -1;
     }
+    if (s->over != NULL &&
+        backdrop_read(s->over, &r->over, r->err, r->err_size) != 0)
+        return -1;
     if (check_pixels(r, format) != 0 ||
         check_volumes(s, r->err, r->err_size) != 0 ||
         open_volume(r, s->first) != 0 || hold_defaults(r) != 0 ||
@@ -394,6 +417,7 @@ int sequence_run(const struct sequence *sequence, char *err, size_t err_size)
     volume_file_close(&r->file);
     sun_cache_free(&r->sun);
     image_free(&r->image);
+    backdrop_free(&r->over);
     free(r->packed);
     free(r);
     return status;

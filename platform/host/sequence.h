@@ -16,6 +16,7 @@ struct sequence {
     const char *out;    /* or NULL */
     const struct scene_settings *settings;
     const struct path *path; /* or NULL */
+    const char *over;        /* a picture that all is drawn over, or NULL */
     bool many;               /* else one frame, and no number in names */
     uint32_t first, last;
     unsigned rate[2]; /* frames per second, a fraction */

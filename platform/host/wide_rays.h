@@ -383,6 +383,19 @@ LANES_INLINE lanes light_samples_of(const lanes first[3],
     return lanes_min(lanes_of(f->light_samples), lanes_leading_zeros(most));
 }
 
+/* cut_at_surface, for r->alive; takes those away that have nothing left. */
+static inline void cut_lanes(struct rays *r, const struct brume_frame *f)
+{
+    uint32_t alive = mask_bits(r->alive);
+    lanes most = lanes_of(0);
+    for (uint32_t n = 0; n < WIDE_LANES; n++)
+        if (alive >> n & 1u)
+            most[n] = brume_samples_before(
+                brume_surface_distance(f, r->x[n], r->y[n]), r->t[n], f->step);
+    r->left = lanes_min(r->left, most);
+    r->alive = mask_and(r->alive, mask_less(lanes_of(0), most));
+}
+
 /* brume_ray_begin for the rays x, y of the lattice that are wanted. */
 static inline void begin_lanes(struct rays *r, lanes light_first[3],
                                const struct brume_frame *f, lanes x, lanes y,
@@ -401,6 +414,8 @@ static inline void begin_lanes(struct rays *r, lanes light_first[3],
     jitter = (jitter * f->strata >> 16) + f->stratum;
     enter_lanes(r, f, r->unit, jitter, t_in, t_out);
     r->left = counts_inside(r, f);
+    if (brume_has_surface(f))
+        cut_lanes(r, f);
     if ((f->jitter & BRUME_JITTER_LIGHT) && f->light_kind != BRUME_UNIFORM)
         begin_light_lanes(light_first, f, jitter_lanes(f, x, y, 1));
 }

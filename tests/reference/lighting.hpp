@@ -5,6 +5,7 @@
 #define BRUME_REFERENCE_LIGHTING_HPP
 
 #include <array>
+#include <vector>
 
 #include "phase.hpp"
 #include "vec3.hpp"
@@ -15,6 +16,17 @@ namespace reference
 enum class ambient_kind { none, constant, gradient, cube };
 enum class visibility_kind { open, sampled, baked };
 enum class output_curve { linear, srgb, filmic };
+
+// In world space; angles in degrees.
+struct lamp {
+    vec3 position;
+    double radius, size;
+    vec3 colour;
+    bool spot = false;
+    vec3 direction = {0, 0, 0};
+    double inner = 0, outer = 0;
+    int shadow_samples = 0;
+};
 
 struct lighting {
     phase_model phase;
@@ -37,6 +49,7 @@ struct lighting {
     double sun_size; // the radius of its disc, degrees
     double haze;     // voxels; 0: none
     output_curve output;
+    std::vector<lamp> lamps;
 };
 
 } // namespace reference

@@ -27,7 +27,7 @@ static vec3 sun_direction(const scene &s)
 renderer::renderer(const volume &v, const scene &s)
     : volume_(v), scene_(s), sun_(v.pool_direction(sun_direction(s))),
       zenith_(v.pool_direction({0, 1, 0})), sun_light_(v, scene_, sun_),
-      sky_light_(v, scene_, zenith_)
+      sky_light_(v, scene_, zenith_), lamp_light_(v, scene_)
 {
     const vec3 forward = normalise(s.target - s.eye);
     const vec3 right = normalise(cross(forward, s.up));
@@ -110,8 +110,8 @@ static vec3 at_most(const vec3 &c, double limit)
 march_result renderer::finish(const ray &r, const ray_sums &sums) const
 {
     const lighting &l = scene_.lit;
-    const vec3 light =
-        l.sun_colour * in_scattering(r, sums) + sky_light_.colour_of(sums.sky);
+    const vec3 light = l.sun_colour * in_scattering(r, sums) +
+                       sky_light_.colour_of(sums.sky) + sums.lamps;
     const vec3 seen = at_most(light * (l.exposure * scene_.albedo), max_light);
     const double lost = 1 - sums.transmittance;
     const double left = lost > 0 ? haze_share(l, sums.moment / lost) : 1;
@@ -126,6 +126,8 @@ march_result renderer::march(const ray &r, double jitter,
 {
     ray_sums sums;
     const lattice_range range = clip(r, jitter);
+    const bool noisy = scene_.jitter_light && scene_.noise_kind != noise::none;
+    const double lamp_jitter = noisy ? light_jitter : 0.5;
     for (double k = range.first; k <= range.last; k++) {
         const double t = (k + jitter) * scene_.step;
         const vec3 p = r.origin + r.direction * t;
@@ -137,6 +139,8 @@ march_result renderer::march(const ray &r, double jitter,
         const double lost = sums.transmittance * (1 - a);
         add_sun(lost, p, light_jitter, sums);
         sky_light_.add(p, lost, sums.sky);
+        sums.lamps =
+            sums.lamps + lamp_light_.at(p, r.direction, lamp_jitter) * lost;
         sums.moment += lost * t;
         sums.transmittance *= a;
         if (sums.transmittance < scene_.min_transmittance)
@@ -203,6 +207,8 @@ static bool is_coloured(const scene &s)
     if (l.ambient == ambient_kind::cube)
         for (const vec3 &side : l.ambient_cube)
             grey = grey && is_grey(side);
+    for (const lamp &lamp : l.lamps)
+        grey = grey && is_grey(lamp.colour);
     return !grey;
 }
 

@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "lamps.hpp"
 #include "light.hpp"
 #include "scene.hpp"
 #include "vec3.hpp"
@@ -65,9 +66,10 @@ class renderer
     // Sums over the samples of a ray; lost = T * (1 - exp(-tau)) of each.
     struct ray_sums {
         double transmittance = 1;
-        double sun[8] = {}; // A_i
-        ambient_sums sky{}; // B_j
-        double moment = 0;  // of lost, over distance
+        double sun[8] = {};  // A_i
+        ambient_sums sky{};  // B_j
+        vec3 lamps{0, 0, 0}; // C_c
+        double moment = 0;   // of lost, over distance
     };
     lattice_range clip(const ray &r, double jitter) const;
     void add_sun(double lost, const vec3 &p, double jitter,
@@ -83,6 +85,7 @@ class renderer
     double pixel_;                                   // its side at distance 1
     sun_light sun_light_;
     sky_light sky_light_;
+    lamp_light lamp_light_;
 };
 
 } // namespace reference

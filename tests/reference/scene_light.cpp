@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "lamps.hpp"
 #include "scene_values.hpp"
 
 namespace reference
@@ -160,6 +161,10 @@ const std::vector<scene_key> &light_keys()
          [](scene &s, text v) {
              s.lit.output = static_cast<output_curve>(
                  parse_word(v, {"linear", "srgb", "filmic"}));
+         }},
+        {"lamps", "none", no, "none, or a file of one lamp per line",
+         [](scene &s, text v) {
+             s.lit.lamps = v == "none" ? std::vector<lamp>() : read_lamps(v);
          }},
         {"dither", nullptr, no, "ignored: values are not quantised",
          [](scene &, text v) { parse_switch(v); }},
