@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include <errno.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,7 +6,8 @@
 
 #include "commands.h"
 #include "image_codec.h"
-#include "out_file.h"
+#include "numbers.h"
+#include "out_set.h"
 #include "pool.h"
 #include "scene_light.h"
 #include "shadow_map.h"
@@ -58,44 +57,16 @@ static int usage(const char *what, const char *arg)
 
 /// Values ///
 
-/* `count` finite numbers with commas between, and nothing else. */
-static bool read_numbers(const char *text, int count, double *out)
-{
-    for (int i = 0; i < count; i++) {
-        char *end;
-        out[i] = strtod(text, &end);
-        if (end == text || !isfinite(out[i]) ||
-            *end != (i + 1 < count ? ',' : '\0'))
-            return false;
-        text = end + 1;
-    }
-    return true;
-}
-
-/* A whole number from 1 to max that ends at `stop`; NULL or what is behind. */
-static const char *read_whole(const char *text, unsigned long max, char stop,
-                              unsigned *out)
-{
-    char *end;
-    errno = 0;
-    unsigned long n = strtoul(text, &end, 10);
-    if (*text < '0' || *text > '9' || *end != stop || errno != 0 || n < 1 ||
-        n > max)
-        return NULL;
-    *out = (unsigned)n;
-    return end + 1;
-}
-
 static int read_number(const char *name, const char *value, double *out)
 {
     char what[64];
     snprintf(what, sizeof what, "%s is a number, not ", name);
-    return read_numbers(value, 1, out) ? 0 : usage(what, value);
+    return numbers_read(value, 1, out) ? 0 : usage(what, value);
 }
 
 static int read_area(struct shadow_place *p, const char *value)
 {
-    p->has_area = read_numbers(value, 4, p->area);
+    p->has_area = numbers_read(value, 4, p->area);
     if (!p->has_area)
         return usage("--area is X0,Z0,X1,Z1, four numbers, not ", value);
     return 0;
@@ -103,8 +74,7 @@ static int read_area(struct shadow_place *p, const char *value)
 
 static int read_size(struct shadow_place *p, const char *value)
 {
-    const char *h = read_whole(value, BRUME_MAX_SIZE, 'x', &p->size[0]);
-    p->has_size = h && read_whole(h, BRUME_MAX_SIZE, '\0', &p->size[1]);
+    p->has_size = numbers_size(value, BRUME_MAX_SIZE, p->size);
     if (!p->has_size)
         return usage("--size is WxH, each 1 to 16384, not ", value);
     return 0;
@@ -113,7 +83,7 @@ static int read_size(struct shadow_place *p, const char *value)
 static int read_threads(struct options *o, const char *value)
 {
     unsigned n;
-    if (read_whole(value, POOL_MAX, '\0', &n) == NULL)
+    if (numbers_whole(value, POOL_MAX, '\0', &n) == NULL)
         return usage("--threads is 1 to 256, not ", value);
     o->threads = (int)n;
     return 0;
@@ -270,39 +240,6 @@ static int encode_depth(const struct brume_shadow_map *map,
     return 0;
 }
 
-/* All or none: nothing is put in its place before all are written. */
-static int write_files(const char *const path[FILES],
-                       const struct image_file file[FILES], char *err,
-                       size_t err_size)
-{
-    struct out_file out[FILES];
-    char what[400];
-    int status = 0, opened = 0;
-    for (int i = 0; i < FILES; i++, opened++) {
-        memset(&out[i], 0, sizeof out[i]);
-        if (path[i] == NULL)
-            continue;
-        if (out_open(&out[i], path[i], what, sizeof what) != 0 ||
-            out_write(&out[i], file[i].data, file[i].size, what, sizeof what) !=
-                0) {
-            snprintf(err, err_size, "%s: %s", path[i], what);
-            status = -1;
-            break;
-        }
-    }
-    for (int i = 0; i < FILES && i <= opened; i++) {
-        if (path[i] == NULL)
-            continue;
-        if (status == 0 && out_close(&out[i], what, sizeof what) != 0) {
-            snprintf(err, err_size, "%s: %s", path[i], what);
-            status = -1;
-        } else if (status != 0) {
-            out_abandon(&out[i]);
-        }
-    }
-    return status;
-}
-
 /// Command ///
 
 /* The extensions, before any work is done. */
@@ -342,7 +279,7 @@ static int write_map(const struct options *o, enum image_format format,
         if (path[i] != NULL && encode_depth(map, depth, i == 2, &file[i]) != 0)
             status = image_error(err, err_size, "not enough memory");
     if (status == 0)
-        status = write_files(path, file, err, err_size);
+        status = out_set_write(FILES, path, file, err, err_size);
     for (int i = 0; i < FILES; i++)
         free(file[i].data);
     return status;
