@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "png_pack.h"
+
 #define HEADER_SIZE 64
 
 /* Of a PGM's header. */
@@ -185,40 +187,82 @@ static int encode_pgm(const struct grey16 *p, struct image_file *file,
     return 0;
 }
 
-/// Files ///
+/// PNG ///
 
-static int read_pgm(const char *path, struct grey16 *picture, char *err,
-                    size_t err_size)
+/* As png_put_start, but for 16 bits. */
+static uint8_t *put_start(uint8_t *p, const struct grey16 *picture)
 {
-    struct image_file file;
-    int status = image_get(path, &file, err, err_size);
-    if (status == 0)
-        status =
-            grey16_pgm_decode(file.data, file.size, picture, err, err_size);
-    free(file.data);
-    return status;
+    static const uint8_t k_signature[PNG_SIGNATURE_BYTES] = {
+        0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
+    uint8_t ihdr[PNG_IHDR_BYTES] = {[8] = 16}; /* bits; colour type 0: grey */
+    memcpy(p, k_signature, sizeof k_signature);
+    png_put_be32(ihdr, (uint32_t)picture->width);
+    png_put_be32(ihdr + 4, (uint32_t)picture->height);
+    return png_put_chunk(p + sizeof k_signature, "IHDR", ihdr, sizeof ihdr);
 }
+
+/* Filters look back by whole pixels of two bytes, as those of two channels of
+ * 8 bits do. */
+static int encode_png(const struct grey16 *picture, struct image_file *file,
+                      char *err, size_t err_size)
+{
+    size_t n = (size_t)picture->width * (size_t)picture->height;
+    struct png_pixels pixels = {NULL, (size_t)picture->width,
+                                (size_t)picture->height, 2,
+                                (size_t)picture->width * 2};
+    struct image_file idat = {NULL, 0};
+    uint8_t *bytes = malloc(2 * n);
+    pixels.data = bytes;
+    for (size_t i = 0; bytes != NULL && i < n; i++) {
+        bytes[2 * i] = (uint8_t)(picture->values[i] >> 8);
+        bytes[2 * i + 1] = (uint8_t)picture->values[i];
+    }
+    if (bytes != NULL && png_pack(NULL, &pixels, &idat) == 0) {
+        file->size = PNG_SIGNATURE_BYTES + 3 * PNG_CHUNK_BYTES +
+                     PNG_IHDR_BYTES + idat.size;
+        file->data = malloc(file->size);
+    }
+    if (file->data != NULL) {
+        uint8_t *p = put_start(file->data, picture);
+        p = png_put_chunk(p, "IDAT", idat.data, idat.size);
+        png_put_chunk(p, "IEND", NULL, 0);
+    }
+    free(idat.data);
+    free(bytes);
+    return file->data != NULL
+               ? 0
+               : image_error(err, err_size, "no memory for the PNG");
+}
+
+/// Files ///
 
 int grey16_read(const char *path, struct grey16 *picture, char *err,
                 size_t err_size)
 {
     enum image_format format;
+    struct image_file file;
     char what[256];
     memset(picture, 0, sizeof *picture);
     if (image_format_of(path, &format, err, err_size) != 0)
         return -1;
-    if (format != IMAGE_PGM)
-        return image_error(err, err_size, "%s: not a .pgm", path);
-    if (read_pgm(path, picture, what, sizeof what) == 0)
-        return 0;
-    return image_error(err, err_size, "%s: %s", path, what);
+    if (format != IMAGE_PGM && format != IMAGE_PNG)
+        return image_error(err, err_size, "%s: neither a .pgm nor a .png",
+                           path);
+    int status = image_get(path, &file, what, sizeof what);
+    if (status == 0)
+        status = (format == IMAGE_PGM ? grey16_pgm_decode : grey16_png_decode)(
+            file.data, file.size, picture, what, sizeof what);
+    free(file.data);
+    return status == 0 ? 0 : image_error(err, err_size, "%s: %s", path, what);
 }
 
 int grey16_encode(enum image_format format, const struct grey16 *picture,
                   struct image_file *file, char *err, size_t err_size)
 {
     file->data = NULL;
-    if (format != IMAGE_PGM)
-        return image_error(err, err_size, "16 bits go into a .pgm");
-    return encode_pgm(picture, file, err, err_size);
+    if (format == IMAGE_PGM)
+        return encode_pgm(picture, file, err, err_size);
+    if (format == IMAGE_PNG)
+        return encode_png(picture, file, err, err_size);
+    return image_error(err, err_size, "16 bits go into a .pgm or a .png");
 }

@@ -28,7 +28,7 @@ int grey16_new(struct grey16 *picture, int width, int height, char *err,
                size_t err_size);
 void grey16_free(struct grey16 *picture);
 
-/* .pgm: binary, any maxval, scaled to 65535; .png: grey, 8 or 16 bits. On
+/* .pgm: binary, any maxval, scaled to 65535; .png: grey of any depth. On
  * failure *picture is empty. */
 int grey16_read(const char *path, struct grey16 *picture, char *err,
                 size_t err_size);
@@ -40,6 +40,9 @@ int grey16_encode(enum image_format format, const struct grey16 *picture,
 
 /* Decoders of bytes, for the tests. */
 int grey16_pgm_decode(const uint8_t *data, size_t size, struct grey16 *picture,
+                      char *err, size_t err_size);
+/* In image_png_read.c. */
+int grey16_png_decode(const uint8_t *data, size_t size, struct grey16 *picture,
                       char *err, size_t err_size);
 
 #endif

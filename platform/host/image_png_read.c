@@ -2,9 +2,9 @@
 /*
  * The PNG reader (PNG specification, second edition). Steps: walk the chunks
  * and join the IDATs, inflate, then per pass undo the row filters and expand
- * the samples to 8 bits.
+ * the samples to 8 bits, or grey ones to 16.
  */
-#include "image_codec.h"
+#include "grey16.h"
 
 #include "deflate.h"
 
@@ -24,6 +24,7 @@ struct png {
     unsigned colours;
     uint8_t *idat; /* all IDAT chunks joined */
     size_t idat_size;
+    struct grey16 *deep; /* where samples of 16 bits go; NULL: refused */
     char *err;
     size_t err_size;
 };
@@ -61,11 +62,14 @@ static int check_format(struct png *png)
     if (colour > RGBA || samples[colour] == 0)
         return image_error(png->err, png->err_size, "PNG colour type %u",
                            colour);
-    if (depth == 16)
+    if (png->deep != NULL && colour != GREY)
+        return image_error(png->err, png->err_size,
+                           "PNG of colour type %u, not plain grey", colour);
+    if (depth == 16 && png->deep == NULL)
         return image_error(png->err, png->err_size,
                            "PNG with 16 bits per sample: only up to 8 are "
                            "supported");
-    if ((depth != 1 && depth != 2 && depth != 4 && depth != 8) ||
+    if ((depth != 1 && depth != 2 && depth != 4 && depth != 8 && depth != 16) ||
         (depth < 8 && colour != GREY && colour != PALETTE))
         return image_error(png->err, png->err_size,
                            "PNG bit depth %u with colour type %u", depth,
@@ -220,6 +224,15 @@ static int expand_pixel(const struct png *png, const uint8_t *row, size_t x,
     return 0;
 }
 
+/* Pixel x of a grey row to 16 bits: every depth divides 65535. */
+static uint16_t expand_grey(const struct png *png, const uint8_t *row, size_t x)
+{
+    if (png->depth == 16)
+        return (uint16_t)(row[2 * x] << 8 | row[2 * x + 1]);
+    return (uint16_t)(get_sample(png, row, x) *
+                      (65535u / ((1u << png->depth) - 1u)));
+}
+
 static uint32_t pass_size(uint32_t size, unsigned start, unsigned step)
 {
     return size <= start ? 0 : (size - start + step - 1) / step;
@@ -239,28 +252,44 @@ static uint64_t pass_bytes(const struct png *png, const struct pass *pass)
     return w == 0 ? 0 : (uint64_t)h * (1 + row_bytes(png, w));
 }
 
+/* The w pixels of an unfiltered row of a pass, to row y of the picture. */
+static int expand_row(const struct png *png, const struct pass *pass,
+                      const uint8_t *row, uint32_t y, uint32_t w,
+                      struct image *image)
+{
+    size_t n = (size_t)image->channels;
+    size_t first = (size_t)y * png->width + pass->x0;
+
+    for (uint32_t x = 0; x < w; x++) {
+        size_t at = first + (size_t)x * pass->dx;
+        if (png->deep != NULL)
+            png->deep->values[at] = expand_grey(png, row, x);
+        else if (expand_pixel(png, row, x, image->u8 + at * n))
+            return image_error(png->err, png->err_size,
+                               "PNG row %lu: colour outside the palette",
+                               (unsigned long)y);
+    }
+    return 0;
+}
+
 /* `zeros` stands for the row above the first. */
 static int decode_pass(struct png *png, const struct pass *pass, uint8_t *raw,
                        const uint8_t *zeros, struct image *image)
 {
     uint32_t w = pass_size(png->width, pass->x0, pass->dx);
-    size_t bytes = row_bytes(png, w), n = (size_t)image->channels;
+    size_t bytes = row_bytes(png, w);
     size_t step = (png->samples * png->depth + 7) / 8;
     const uint8_t *prior = zeros;
 
     if (w == 0)
         return 0;
     for (uint32_t y = pass->y0; y < png->height; y += pass->dy) {
-        uint8_t *out = image->u8 + ((size_t)y * png->width + pass->x0) * n;
         if (unfilter(raw[0], raw + 1, prior, bytes, step))
             return image_error(png->err, png->err_size,
                                "PNG row %lu: unknown filter %u",
                                (unsigned long)y, raw[0]);
-        for (uint32_t x = 0; x < w; x++, out += n * pass->dx)
-            if (expand_pixel(png, raw + 1, x, out))
-                return image_error(png->err, png->err_size,
-                                   "PNG row %lu: colour outside the palette",
-                                   (unsigned long)y);
+        if (expand_row(png, pass, raw + 1, y, w, image))
+            return -1;
         prior = raw + 1;
         raw += 1 + bytes;
     }
@@ -294,11 +323,16 @@ static int decode_raw(struct png *png, uint8_t *raw, size_t raw_size,
     if (error)
         return image_error(png->err, png->err_size, "PNG picture: %s",
                            inflate_error_text(error));
-    if (image_new_u8(image, (int)png->width, (int)png->height, grey ? 1 : 3,
-                     png->err, png->err_size))
+    if (png->deep != NULL
+            ? grey16_new(png->deep, (int)png->width, (int)png->height, png->err,
+                         png->err_size)
+            : image_new_u8(image, (int)png->width, (int)png->height,
+                           grey ? 1 : 3, png->err, png->err_size))
         return -1;
     if (decode_passes(png, raw, image)) {
         image_free(image);
+        if (png->deep != NULL)
+            grey16_free(png->deep);
         return -1;
     }
     return 0;
@@ -325,17 +359,17 @@ static int decode_picture(struct png *png, struct image *image)
     return status;
 }
 
-int image_png_decode(const uint8_t *data, size_t size, struct image *image,
-                     char *err, size_t err_size)
+static int decode_file(const uint8_t *data, size_t size, struct image *image,
+                       struct grey16 *deep, char *err, size_t err_size)
 {
     struct png *png = calloc(1, sizeof *png);
     int status = -1;
 
-    memset(image, 0, sizeof *image);
     if (!png)
         return image_error(err, err_size, "no memory for the PNG");
     png->err = err;
     png->err_size = err_size;
+    png->deep = deep;
     png->idat = malloc(size + 1);
     if (!png->idat)
         image_error(err, err_size, "no memory for the PNG");
@@ -344,4 +378,21 @@ int image_png_decode(const uint8_t *data, size_t size, struct image *image,
     free(png->idat);
     free(png);
     return status;
+}
+
+int image_png_decode(const uint8_t *data, size_t size, struct image *image,
+                     char *err, size_t err_size)
+{
+    memset(image, 0, sizeof *image);
+    return decode_file(data, size, image, NULL, err, err_size);
+}
+
+int grey16_png_decode(const uint8_t *data, size_t size, struct grey16 *picture,
+                      char *err, size_t err_size)
+{
+    struct image none;
+
+    memset(&none, 0, sizeof none);
+    memset(picture, 0, sizeof *picture);
+    return decode_file(data, size, &none, picture, err, err_size);
 }
