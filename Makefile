@@ -23,7 +23,8 @@ CXXFLAGS ?= -O2
 CPPFLAGS += -Icore
 WARN = -Wall -Wextra -Wshadow -Wconversion -Werror
 CORE_FLAGS = -std=c99 -ffreestanding $(WARN)
-HOST_FLAGS = -std=c11 -D_POSIX_C_SOURCE=200809L $(WARN)
+# Contraction would give doubles, and what is made of them, other last bits.
+HOST_FLAGS = -std=c11 -D_POSIX_C_SOURCE=200809L -ffp-contract=off $(WARN)
 CONVERT_FLAGS = -std=c++17 -ffp-contract=off -Wall -Wextra -Wshadow -Werror \
 	-DNANOVDB_USE_BLOSC -DNANOVDB_USE_ZIP
 CONVERT_LIBS = -lopenvdb -ltbb -lImath -lblosc -lz -lpthread

@@ -9,5 +9,6 @@
 int render_main(int argc, char **argv);
 int info_main(int argc, char **argv);
 int shadow_main(int argc, char **argv);
+int surface_main(int argc, char **argv);
 
 #endif

@@ -12,6 +12,7 @@ static const char k_help[] =
     "\n"
     "  render   draw a baked volume, as a picture or a sequence\n"
     "  shadow   draw the shadow that a baked volume throws\n"
+    "  surface  draw solid things for a volume's scene: depth, sun map\n"
     "  info     say what a baked volume holds\n"
     "  compare  measure how two pictures differ\n"
     "\n"
@@ -24,6 +25,8 @@ int main(int argc, char **argv)
         return render_main(argc - 1, argv + 1);
     if (strcmp(name, "shadow") == 0)
         return shadow_main(argc - 1, argv + 1);
+    if (strcmp(name, "surface") == 0)
+        return surface_main(argc - 1, argv + 1);
     if (strcmp(name, "info") == 0)
         return info_main(argc - 1, argv + 1);
     if (strcmp(name, "compare") == 0)
