@@ -80,12 +80,12 @@ static void set_ways(struct brume_frame *f, const struct brume_fog *fog)
 }
 
 /* The base along zenith, Q17.14, of positions that carry the frame's bias. */
-static int32_t base_of(const struct brume_frame *f, const struct brume_fog *fog)
+static int32_t base_of(const struct brume_frame *f, const struct brume_scene *s)
 {
-    int32_t base = fog->base / 4;
-    uint32_t bias = 0x8000u - brume_half_voxel(f);
+    int32_t base = s->lighting->fog->base / 4;
     for (int i = 0; i < 3; i++)
-        base += mul_signed_round(f->lit.zenith[i], bias, 0);
+        base +=
+            mul_both_signed_round(f->lit.zenith[i], f->eye[i] - s->eye[i], 0);
     return base;
 }
 
@@ -101,7 +101,7 @@ void brume_fog_begin(struct brume_frame *frame, const struct brume_scene *scene)
     out->step = scene->step << zeros;
     out->step_log2 = (int8_t)(16 - (int32_t)zeros);
     out->density = fog->density;
-    out->base = base_of(f, fog);
+    out->base = base_of(f, scene);
     out->per_falloff = brume_number_of(0, 0);
     if (fog->falloff != 0)
         out->per_falloff = brume_number_mul(

@@ -125,11 +125,10 @@ bool brume_sun_map_begin(struct brume_frame *frame,
     struct brume_lit_map *out = &frame->lit.map;
     const int32_t *sun = frame->sun;
     int32_t across[3], down[3];
-    int32_t bias = (int32_t)(0x8000u - brume_half_voxel(frame));
     frame->lit.sun_map = map;
     out->bias = (int32_t)(map->bias >> 3);
     for (int i = 0; i < 3; i++)
-        out->origin[i] = (map->origin[i] + bias) / 2;
+        out->origin[i] = (map->origin[i] + frame->eye[i] - scene->eye[i]) / 2;
     return edge_of(across, map->across, sun) && edge_of(down, map->down, sun) &&
            set_codes(out, across, down, sun, map->range) &&
            set_texels(out, 0, map->across, down, sun, map->width) &&

@@ -73,7 +73,7 @@ static void draw(struct renderer *r, const struct brume_volume *volume,
                  const struct brume_scene *scene, uint8_t *pixels)
 {
     const struct render_target target = {BRUME_RGB888, pixels,
-                                         scene->width * 3u};
+                                         scene->width * 3u, NULL};
     renderer_volume(r, volume);
     if (renderer_draw(r, scene, &target, err, sizeof err) != 0) {
         printf("# %s\n", err);
@@ -208,11 +208,11 @@ static void test_errors(void)
     struct renderer *r = new_renderer(2);
     struct brume_scene s = scene_at(&volume, 0, 0);
     renderer_volume(r, &volume);
-    const struct render_target narrow = {BRUME_RGB888, pixels, WIDTH};
+    const struct render_target narrow = {BRUME_RGB888, pixels, WIDTH, NULL};
     tap_check(renderer_draw(r, &s, &narrow, err, sizeof err) != 0 &&
                   strstr(err, "rectangle"),
               "rows that are too short are an error");
-    const struct render_target target = {BRUME_RGB888, pixels, WIDTH * 3};
+    const struct render_target target = {BRUME_RGB888, pixels, WIDTH * 3, NULL};
     s.alpha = 1;
     tap_check(renderer_draw(r, &s, &target, err, sizeof err) != 0 &&
                   strstr(err, "scene field"),

@@ -106,6 +106,42 @@ static void test_lamp(void)
     things_scene = before;
 }
 
+/// Over a picture ///
+
+static uint32_t next_random(void)
+{
+    static uint32_t seed = 1;
+    seed ^= seed << 13;
+    seed ^= seed >> 17;
+    seed ^= seed << 5;
+    return seed;
+}
+
+/* dst = rgb + dst * (255 - a) / 255 of a linear picture against the core over
+ * the same background: rgb and a are rounded, by half a code each at most, so
+ * the codes are at most one apart. */
+static void test_rgba(void)
+{
+    struct brume_scene linear = things_scene;
+    struct brume_frame frame;
+    int most = 0;
+    linear.output = BRUME_LINEAR;
+    brume_begin_frame(&frame, &things_volume.volume, &linear);
+    for (int k = 0; k < 200000; k++) {
+        struct brume_radiance ray = {.transmittance = next_random() % 65537};
+        uint32_t code = next_random() % 256;
+        uint8_t rgba[4], want[3];
+        ray.light = next_random() % (65537 - ray.transmittance);
+        for (int c = 0; c < 3; c++)
+            frame.background[c] = (code * 65536 + 127) / 255;
+        brume_pack_rect(&frame, &ray, 1, 0, 0, 1, 1, BRUME_RGBA8888, rgba, 4);
+        brume_pack_rect(&frame, &ray, 1, 0, 0, 1, 1, BRUME_RGB888, want, 3);
+        int got = (int)(rgba[0] + (code * (255u - rgba[3]) + 127) / 255);
+        most = abs(got - want[0]) > most ? abs(got - want[0]) : most;
+    }
+    tap_check(most == 1, "RGBA over a linear picture is off by %d code", most);
+}
+
 /// Sun maps ///
 
 /* What the texel nearest to p holds, as a distance from the map's plane. */
@@ -256,6 +292,7 @@ int main(void)
     things_begin();
     test_colour();
     test_lamp();
+    test_rgba();
     test_sun_map();
     test_cover();
     free(things_volume.data);

@@ -78,4 +78,5 @@ report
 echo "try:
   $BUILD/brume render $volume --set sun=60,20 -o cloud.png
   $BUILD/brume render $volume --frames 0:47 --path scenes/day.path -o day.y4m
-  $BUILD/brume info $volume"
+  $BUILD/brume info $volume
+  sh scenes/composed.sh    # volumes and fog among solid things"

@@ -65,7 +65,8 @@ std::vector<lamp> read_lamps(const std::string &path)
 
 /// Light ///
 
-lamp_light::lamp_light(const volume &v, const scene &s) : volume_(v), scene_(s)
+lamp_light::lamp_light(const volume &v, const scene &s, const air &a)
+    : volume_(v), scene_(s), air_(a)
 {
     // The volume knows points; lengths are those of a unit step in the world.
     const double scale =
@@ -101,11 +102,11 @@ double lamp_light::through(const placed &l, const vec3 &p, double jitter) const
     for (int i = 0; i < n; i++) {
         const vec3 q = p + way * ((i + jitter) / n);
         if (volume_.contains(q))
-            sum += volume_.density(q, scene_.filter);
+            sum +=
+                scene_.light_density_scale * volume_.density(q, scene_.filter);
+        sum += air_.fog_at(q);
     }
-    return n == 0
-               ? 1
-               : std::exp(-scene_.light_density_scale * sum * length(way) / n);
+    return n == 0 ? 1 : std::exp(-sum * length(way) / n);
 }
 
 double lamp_light::share(const placed &l, const vec3 &p, const vec3 &ray,

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "air.hpp"
 #include "scene.hpp"
 #include "vec3.hpp"
 #include "volume.hpp"
@@ -22,7 +23,7 @@ class lamp_light
 {
   public:
     // Keeps references.
-    lamp_light(const volume &v, const scene &s);
+    lamp_light(const volume &v, const scene &s, const air &a);
     // The sum over lamps of what a sample at p receives per channel, seen along
     // `ray`.
     vec3 at(const vec3 &p, const vec3 &ray, double jitter) const;
@@ -39,6 +40,7 @@ class lamp_light
 
     const volume &volume_;
     const scene &scene_;
+    const air &air_;
     std::vector<placed> lamps_;
 };
 

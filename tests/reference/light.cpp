@@ -11,6 +11,33 @@ namespace reference
 
 /// Sums along a ray ///
 
+// Where p + direction * t is in the pool's box; none when far < near. What is
+// outside of it adds nothing, so sums need not go there.
+struct reach {
+    double near, far;
+};
+
+static reach reach_of(const volume &v, const vec3 &p, const vec3 &direction)
+{
+    const double from[3] = {p.x, p.y, p.z};
+    const double speed[3] = {direction.x, direction.y, direction.z};
+    const vec3 low = v.box_min(), high = v.box_max();
+    const double face[2][3] = {{low.x, low.y, low.z}, {high.x, high.y, high.z}};
+    reach r{0, std::numeric_limits<double>::infinity()};
+    for (int i = 0; i < 3; i++) {
+        if (speed[i] == 0) {
+            if (from[i] < face[0][i] || from[i] > face[1][i])
+                return {0, -1};
+            continue;
+        }
+        const double a = (face[0][i] - from[i]) / speed[i];
+        const double b = (face[1][i] - from[i]) / speed[i];
+        r.near = std::max(r.near, std::min(a, b));
+        r.far = std::min(r.far, std::max(a, b));
+    }
+    return r;
+}
+
 // Of density times distance, at s_k = step * 2^k, moved by the jitter; the
 // weights are not.
 static double doubling_sum(const volume &v, lookup filter, const vec3 &p,
@@ -18,12 +45,9 @@ static double doubling_sum(const volume &v, lookup filter, const vec3 &p,
                            double jitter)
 {
     double sum = 0, distance = step;
-    for (int k = 0; k < samples; k++, distance *= 2) {
-        const vec3 q = p + direction * (distance * (1 + jitter));
-        if (!v.contains(q))
-            break;
-        sum += v.density(q, filter) * distance;
-    }
+    for (int k = 0; k < samples; k++, distance *= 2)
+        sum += v.density(p + direction * (distance * (1 + jitter)), filter) *
+               distance;
     return sum;
 }
 
@@ -31,13 +55,11 @@ static double doubling_sum(const volume &v, lookup filter, const vec3 &p,
 static double uniform_sum(const volume &v, lookup filter, const vec3 &p,
                           const vec3 &direction, int samples, double step)
 {
+    const reach r = reach_of(v, p, direction);
     double sum = 0;
-    for (int i = 0; i < samples; i++) {
-        const vec3 q = p + direction * ((i + 0.5) * step);
-        if (!v.contains(q))
-            break;
-        sum += v.density(q, filter);
-    }
+    for (double i = std::max(0.0, std::floor(r.near / step) - 1);
+         i < samples && (i - 1) * step <= r.far; i++)
+        sum += v.density(p + direction * ((i + 0.5) * step), filter);
     return sum * step;
 }
 
@@ -100,9 +122,8 @@ double sun_light::cone_depth(const vec3 &p, double jitter) const
         const double length = s.end - s.start;
         const vec3 q =
             p + sun_ * (scene_.light_step * (s.start + length * place));
-        if (!volume_.contains(q))
-            break;
-        sum += length * cone_density(length, q);
+        if (volume_.contains(q))
+            sum += length * cone_density(length, q);
     }
     return sum * scene_.light_step;
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <vector>
 
+#include "air.hpp"
 #include "phase.hpp"
 #include "vec3.hpp"
 
@@ -48,6 +49,10 @@ struct lighting {
     vec3 sky_zenith, sky_horizon, sky_ground, sun_disc;
     double sun_size; // the radius of its disc, degrees
     double haze;     // voxels; 0: none
+
+    reference::fog fog;
+    grey_map surface;
+    reference::sun_map sun_map;
     output_curve output;
     std::vector<lamp> lamps;
 };

@@ -27,7 +27,8 @@ static vec3 sun_direction(const scene &s)
 renderer::renderer(const volume &v, const scene &s)
     : volume_(v), scene_(s), sun_(v.pool_direction(sun_direction(s))),
       zenith_(v.pool_direction({0, 1, 0})), sun_light_(v, scene_, sun_),
-      sky_light_(v, scene_, zenith_), lamp_light_(v, scene_)
+      sky_light_(v, scene_, zenith_), air_(v, scene_, sun_, zenith_),
+      lamp_light_(v, scene_, air_)
 {
     const vec3 forward = normalise(s.target - s.eye);
     const vec3 right = normalise(cross(forward, s.up));
@@ -61,9 +62,13 @@ static void clip_axis(double o, double d, double low, double high,
 }
 
 // The lattice points that may have a density, with one to spare at either
-// end for rounding: a point outside the box adds exactly nothing.
-renderer::lattice_range renderer::clip(const ray &r, double jitter) const
+// end for rounding: a point outside the box adds exactly nothing. With fog all
+// up to the ray's end.
+renderer::lattice_range renderer::clip(const ray &r, double jitter,
+                                       double end) const
 {
+    if (air_.has_fog())
+        return {0, std::ceil(end / scene_.step - jitter) + 1};
     const vec3 low = volume_.box_min(), high = volume_.box_max();
     double t_min = 0, t_max = std::numeric_limits<double>::infinity();
     clip_axis(r.origin.x, r.direction.x, low.x, high.x, t_min, t_max);
@@ -79,10 +84,13 @@ renderer::lattice_range renderer::clip(const ray &r, double jitter) const
 void renderer::add_sun(double lost, const vec3 &p, double jitter,
                        ray_sums &sums) const
 {
-    const double tau = sun_light_.depth(p, jitter);
+    const double lit = air_.lit(p);
+    if (lit == 0)
+        return;
+    const double tau = sun_light_.depth(p, jitter) + air_.fog_depth(p, jitter);
     double extinction = 1;
     for (int i = 0; i < scene_.lit.octaves; i++) {
-        sums.sun[i] += lost * std::exp(-extinction * tau);
+        sums.sun[i] += lost * lit * std::exp(-extinction * tau);
         extinction *= scene_.lit.octave_a;
     }
 }
@@ -121,21 +129,26 @@ march_result renderer::finish(const ray &r, const ray_sums &sums) const
 
 // t_k is computed from k, never accumulated: the lattice does not depend on
 // where the ray enters the box.
-march_result renderer::march(const ray &r, double jitter,
-                             double light_jitter) const
+march_result renderer::march(const ray &r, double jitter, double light_jitter,
+                             double end) const
 {
     ray_sums sums;
-    const lattice_range range = clip(r, jitter);
+    const lattice_range range = clip(r, jitter, end);
     const bool noisy = scene_.jitter_light && scene_.noise_kind != noise::none;
     const double lamp_jitter = noisy ? light_jitter : 0.5;
     for (double k = range.first; k <= range.last; k++) {
         const double t = (k + jitter) * scene_.step;
+        if (t >= end)
+            break;
         const vec3 p = r.origin + r.direction * t;
         const double density = volume_.density(p, scene_.filter);
-        if (!(density > scene_.min_density))
+        const double fog = air_.fog_at(p);
+        const bool is_dense = density > scene_.min_density;
+        if (!is_dense && fog == 0)
             continue;
         const double a =
-            std::exp(-scene_.density_scale * density * scene_.step);
+            std::exp(-(scene_.density_scale * (is_dense ? density : 0) + fog) *
+                     scene_.step);
         const double lost = sums.transmittance * (1 - a);
         add_sun(lost, p, light_jitter, sums);
         sky_light_.add(p, lost, sums.sky);
@@ -171,8 +184,10 @@ double renderer::jitter_of(int x, int y, channel c) const
 
 march_result renderer::march_pixel(int x, int y) const
 {
-    return march(camera_ray(x, y), jitter_of(x, y, primary_channel),
-                 jitter_of(x, y, light_channel));
+    const ray r = camera_ray(x, y);
+    return march(r, jitter_of(x, y, primary_channel),
+                 jitter_of(x, y, light_channel),
+                 air_.end(r.origin, r.direction, x, y));
 }
 
 void renderer::render_row(int y, const rectangle &area, picture &out) const

@@ -4,8 +4,10 @@
 #ifndef BRUME_REFERENCE_MARCH_HPP
 #define BRUME_REFERENCE_MARCH_HPP
 
+#include <limits>
 #include <vector>
 
+#include "air.hpp"
 #include "lamps.hpp"
 #include "light.hpp"
 #include "scene.hpp"
@@ -51,7 +53,10 @@ class renderer
     {
         return sun_;
     }
-    march_result march(const ray &r, double jitter, double light_jitter) const;
+    // Until t = end, in voxels.
+    march_result
+    march(const ray &r, double jitter, double light_jitter,
+          double end = std::numeric_limits<double>::infinity()) const;
     march_result march_pixel(int x, int y) const;
     // What a ray that meets nothing sees.
     vec3 background(const ray &r) const;
@@ -71,7 +76,7 @@ class renderer
         vec3 lamps{0, 0, 0}; // C_c
         double moment = 0;   // of lost, over distance
     };
-    lattice_range clip(const ray &r, double jitter) const;
+    lattice_range clip(const ray &r, double jitter, double end) const;
     void add_sun(double lost, const vec3 &p, double jitter,
                  ray_sums &sums) const;
     double in_scattering(const ray &r, const ray_sums &sums) const;
@@ -85,6 +90,7 @@ class renderer
     double pixel_;                                   // its side at distance 1
     sun_light sun_light_;
     sky_light sky_light_;
+    air air_;
     lamp_light lamp_light_;
 };
 

@@ -157,6 +157,31 @@ const std::vector<scene_key> &light_keys()
          [](scene &s, text v) { s.lit.sun_size = parse_in(v, 0, 90); }},
         {"haze", "0", no, "voxels to 1/e of the volume; 0: none",
          [](scene &s, text v) { s.lit.haze = parse_in(v, 0, infinity); }},
+        {"fog_density", "0", no, "extinction per voxel below fog_base",
+         [](scene &s, text v) { s.lit.fog.density = parse_in(v, 0, 1); }},
+        {"fog_base", "0", no, "world height",
+         [](scene &s, text v) {
+             s.lit.fog.base = parse_in(v, -infinity, infinity);
+         }},
+        {"fog_falloff", "0", no, "world height to 1/e; 0: none",
+         [](scene &s, text v) { s.lit.fog.falloff = parse_in(v, 0, infinity); }},
+        {"fog_far", "0", no, "world distance; 0: 32766 voxels",
+         [](scene &s, text v) { s.lit.fog.far = parse_in(v, 0, infinity); }},
+        {"fog_shapes", "none", no, "none | FILE: spheres and boxes",
+         [](scene &s, text v) {
+             if (v != "none")
+                 s.lit.fog.shapes = read_fog_shapes(v);
+         }},
+        {"surface", "none", no, "none | FILE.pgm: depth codes",
+         [](scene &s, text v) {
+             if (v != "none")
+                 s.lit.surface = read_grey_map(v);
+         }},
+        {"sun_map", "none", no, "none | FILE.pgm: what shades the sun",
+         [](scene &s, text v) {
+             if (v != "none")
+                 s.lit.sun_map = read_sun_map(v);
+         }},
         {"output", "linear", no, "linear | srgb | filmic, for --display",
          [](scene &s, text v) {
              s.lit.output = static_cast<output_curve>(
