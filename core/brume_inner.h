@@ -291,8 +291,9 @@ BRUME_INLINE bool brume_scene_has_colour(const struct brume_scene *s)
     for (uint32_t j = 0; j < brume_ambient_colours(l->ambient); j++)
         grey = grey && brume_is_grey(l->ambient_colour[j]);
     /* also of scenes that nobody has checked yet */
-    for (uint32_t i = 0; l->lamps != NULL && i < l->lamp_count; i++)
-        grey = grey && i < BRUME_MAX_LAMPS && brume_is_grey(l->lamps[i].colour);
+    uint32_t lamps = l->lamps != NULL ? l->lamp_count : 0;
+    for (uint32_t i = 0; i < lamps && i < BRUME_MAX_LAMPS; i++)
+        grey = grey && brume_is_grey(l->lamps[i].colour);
     return !grey;
 }
 

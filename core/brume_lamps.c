@@ -183,11 +183,22 @@ static void normal_of(int32_t out[3], const int32_t a[3], const int32_t b[3],
         out[i] = -out[i];
 }
 
+/* Rays of the grid along an axis, with those that the lattice has beyond it:
+ * at most 3. */
+static uint32_t rays_of(const struct brume_frame *f, int axis)
+{
+    uint32_t rays = f->lattice[axis];
+#if BRUME_WITH_TEMPORAL
+    rays <<= f->cell_log2[axis];
+#endif
+    return rays;
+}
+
 /* The first ray of the grid that is in tile n of an axis, or one after the
  * last. */
 static uint32_t first_of(const struct brume_frame *f, int axis, uint32_t n)
 {
-    uint32_t rays = f->grid[axis], per = f->lit.tile[axis];
+    uint32_t rays = rays_of(f, axis), per = f->lit.tile[axis];
     uint32_t x = ((n << 16) + per - 1u) / per;
     return x < rays ? x : rays;
 }
@@ -310,7 +321,7 @@ void brume_lamps_begin(struct brume_frame *frame,
     if (c == NULL || l->lamp_count == 0)
         return;
     for (int i = 0; i < 2; i++)
-        f->lit.tile[i] = ((uint32_t)TILES << 16) / f->grid[i];
+        f->lit.tile[i] = ((uint32_t)TILES << 16) / rays_of(f, i);
     for (uint32_t i = 0; i < l->lamp_count; i++) {
         struct brume_lit_lamp *p = &c->lamp[i];
         set_lamp(p, f, scene, &l->lamps[i]);
