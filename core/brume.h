@@ -618,18 +618,18 @@ struct brume_lamp {
 
 /* What a frame makes of a lamp. No user-visible fields. */
 struct brume_lit_lamp {
-    uint32_t position[3]; /* with the frame's bias, Q16.16, plus 2^31 */
-    uint32_t radius;      /* Q16.16 */
-    uint32_t colour[3];   /* Q12.20: albedo and exposure applied */
-    uint32_t size;        /* mantissa of its square, Q0.32, >= 1/2 */
-    uint32_t per_radius;  /* mantissa of 2^-64 / its square, 2^29 .. 2^31 */
-    int32_t direction[3]; /* of a spot, Q2.30, unit */
-    int32_t cos_outer, cos_inner;
-    uint32_t slope;      /* mantissa of 1 / (cos_inner - cos_outer) */
-    uint32_t per_sample; /* Q0.32: 1 / shadow_samples */
-    uint8_t size_shift, radius_shift, slope_shift;
-    uint8_t shadow_samples;
+    uint32_t position[3];      /* halved: with the bias, Q17.15, plus 2^30 */
+    uint64_t radius_square;    /* of halves, Q30 */
+    uint32_t per_radius, size; /* mantissas: of 1 over that; of size^2 */
+    uint32_t colour[3];        /* Q12.20: albedo and exposure applied */
+    uint8_t radius_shift, size_shift; /* zeros above those squares */
+    bool plain; /* a point light without anything; size / radius >= 2^-16 */
     bool spot;
+    int32_t direction[3]; /* Q2.30, unit */
+    int32_t cos_outer, cos_inner;
+    uint32_t slope; /* mantissa of 1 / (cos_inner - cos_outer) */
+    uint8_t slope_shift, shadow_samples;
+    uint32_t per_sample; /* Q0.32: 1 / shadow_samples */
     /* Of the clusters: beyond `reach`, Q16.16, nothing counts as within the
      * radius; depth as struct brume_clusters.end; tiles, both ends included;
      * `before` is of use while those are found. */
@@ -658,13 +658,13 @@ struct brume_lit_lamp {
 #endif
 #define BRUME_LAMP_WORDS ((BRUME_MAX_LAMPS + 31) / 32)
 struct brume_clusters {
+    struct brume_lit_lamp lamp[BRUME_MAX_LAMPS];
     /* lamp n is in word n / 32, from its highest bit down */
     uint32_t lamps[BRUME_CLUSTER_SLICES][BRUME_CLUSTER_SIDE][BRUME_CLUSTER_SIDE]
                   [BRUME_LAMP_WORDS];
     /* Where slices end, Q16.16, by the largest of the three coordinates'
      * distances from the eye */
     uint32_t end[BRUME_CLUSTER_SLICES];
-    struct brume_lit_lamp lamp[BRUME_MAX_LAMPS];
 };
 
 /* Where rays end: for each pixel of the image a distance from the eye along its

@@ -15,9 +15,11 @@
 
 #if defined(__GNUC__)
 #define BRUME_INLINE static inline __attribute__((always_inline))
+#define BRUME_APART static __attribute__((noinline))
 #define BRUME_OPAQUE(v) __asm__("" : "+r"(v))
 #else
 #define BRUME_INLINE static inline
+#define BRUME_APART static
 #define BRUME_OPAQUE(v) ((void)0)
 #endif
 #if defined(__GNUC__) && __GNUC__ >= 7 || defined(__clang__)

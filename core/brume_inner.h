@@ -411,8 +411,9 @@ BRUME_INLINE bool brume_scene_has_colour(const struct brume_scene *s)
     for (uint32_t j = 0; j < brume_ambient_colours(l->ambient); j++)
         grey = grey && brume_is_grey(l->ambient_colour[j]);
     /* also of scenes that nobody has checked yet */
-    for (uint32_t i = 0; l->lamps != NULL && i < l->lamp_count; i++)
-        grey = grey && i < BRUME_MAX_LAMPS && brume_is_grey(l->lamps[i].colour);
+    uint32_t lamps = l->lamps != NULL ? l->lamp_count : 0;
+    for (uint32_t i = 0; i < lamps && i < BRUME_MAX_LAMPS; i++)
+        grey = grey && brume_is_grey(l->lamps[i].colour);
     return !grey;
 }
 
@@ -463,6 +464,24 @@ int brume_lamps_check(const struct brume_scene *scene);
 /* Fills the clusters of a checked scene; camera and lighting are known. */
 void brume_lamps_begin(struct brume_frame *frame,
                        const struct brume_scene *scene);
+
+/* A coordinate, Q16.16, in two's complement, as lamps have it: halved, so that
+ * differences of any two are signed words; plus 2^30, so that none is below
+ * 0. */
+BRUME_INLINE uint32_t brume_halved(uint32_t p)
+{
+    return (p + 0x80000000u) >> 1;
+}
+
+BRUME_INLINE uint64_t brume_square(int32_t a)
+{
+#if BRUME_MUL64
+    return (uint64_t)((int64_t)a * a);
+#else
+    uint32_t m = magnitude(a);
+    return (uint64_t)mul_hi_floor(m, m) << 32 | m * m;
+#endif
+}
 
 /* A word that changes with the lamps, wherever the camera is. */
 uint32_t brume_lamps_sameness(const struct brume_frame *frame);

@@ -72,22 +72,28 @@ static void set_spot(struct brume_lit_lamp *out, const struct brume_lamp *in)
     out->slope = brume_reciprocal(range << out->slope_shift);
 }
 
-/* Squares as the high word of that of a length with its highest bit in bit 30:
- * 2^28 .. 2^30. */
+/* The highest 32 bits of a square, and how many zeros are above them. */
+static uint32_t mantissa_of(uint64_t square, uint8_t *zeros)
+{
+    uint32_t high = (uint32_t)(square >> 32), low = (uint32_t)square;
+    uint32_t n = high != 0 ? leading_zeros(high) : 32u + leading_zeros(low);
+    *zeros = (uint8_t)n;
+    for (; n >= 32; n -= 32) {
+        high = low;
+        low = 0;
+    }
+    return high << n | low >> 1 >> (31u - n);
+}
+
 static void set_lengths(struct brume_lit_lamp *out, const struct brume_lamp *in)
 {
-    uint32_t up = leading_zeros(in->radius) - 1u, r = in->radius << up;
-    out->radius = in->radius;
-    out->radius_shift = (uint8_t)up;
-    uint32_t square = mul_hi_floor(r, r), n = leading_zeros(square);
-    /* 2^59 / square, n = 2 or 3 */
-    out->per_radius = brume_reciprocal(square << n) >> (4u - n);
-    up = leading_zeros(in->size) - 1u;
-    r = in->size << up;
-    square = mul_hi_floor(r, r);
-    n = leading_zeros(square);
-    out->size = square << n;
-    out->size_shift = (uint8_t)(2u * up + n);
+    uint64_t square = brume_square((int32_t)(in->radius >> 1));
+    out->radius_square = square;
+    /* 2^63 / mantissa; one less, so that no quotient reaches 1 */
+    out->per_radius =
+        brume_reciprocal(mantissa_of(square, &out->radius_shift)) - 1u;
+    out->size =
+        mantissa_of(brume_square((int32_t)(in->size >> 1)), &out->size_shift);
 }
 
 /* The largest of the coordinates' distances from the eye, Q16.16. */
@@ -96,11 +102,11 @@ static uint32_t depth_of(const struct brume_frame *f,
 {
     uint32_t most = 0;
     for (int i = 0; i < 3; i++) {
-        uint32_t a = l->position[i], b = (uint32_t)f->eye[i] + 0x80000000u;
+        uint32_t a = l->position[i], b = brume_halved((uint32_t)f->eye[i]);
         uint32_t m = a > b ? a - b : b - a;
         most = m > most ? m : most;
     }
-    return most;
+    return most << 1;
 }
 
 static uint32_t sum_of(uint32_t a, uint32_t b)
@@ -112,10 +118,9 @@ static uint32_t sum_of(uint32_t a, uint32_t b)
  * its radius. Positions are off their ray by a quarter voxel at most where it
  * begins, and by half a unit per axis more with each sample since. */
 static uint32_t reach_of(const struct brume_frame *f,
-                         const struct brume_lit_lamp *l)
+                         const struct brume_lit_lamp *l, uint32_t radius)
 {
-    uint32_t far = sum_of(l->depth, l->radius);
-    uint32_t reach = l->radius + (l->radius >> 16) + 0x4000u;
+    uint32_t far = sum_of(l->depth, radius), reach = radius + 0x4000u;
     return reach + 2u * (far / f->step + 1u);
 }
 
@@ -125,8 +130,9 @@ static void set_lamp(struct brume_lit_lamp *out, const struct brume_frame *f,
     static const struct brume_lit_lamp k_none;
     *out = k_none;
     for (int i = 0; i < 3; i++)
-        out->position[i] = 0x80000000u + (uint32_t)in->position[i] +
-                           (uint32_t)f->eye[i] - (uint32_t)s->eye[i];
+        out->position[i] =
+            brume_halved((uint32_t)in->position[i] + (uint32_t)f->eye[i] -
+                         (uint32_t)s->eye[i]);
     brume_lit_colour(out->colour, s, in->colour);
     for (int c = 0; c < 3; c++)
         out->colour[c] =
@@ -136,8 +142,11 @@ static void set_lamp(struct brume_lit_lamp *out, const struct brume_frame *f,
     out->shadow_samples = in->shadow_samples;
     if (in->shadow_samples != 0)
         out->per_sample = 0xffffffffu / in->shadow_samples;
+    out->plain = !out->spot && in->shadow_samples == 0 &&
+                 s->lighting->phase == NULL &&
+                 out->size_shift <= out->radius_shift + 32;
     out->depth = depth_of(f, out);
-    out->reach = reach_of(f, out);
+    out->reach = reach_of(f, out, in->radius);
 }
 
 /// Tiles ///
@@ -150,8 +159,7 @@ static int32_t before_plane(const struct brume_frame *f,
 {
     int32_t sum = 0;
     for (int i = 0; i < 3; i++) {
-        uint32_t a = l->position[i] >> 1;
-        uint32_t b = ((uint32_t)f->eye[i] + 0x80000000u) >> 1;
+        uint32_t a = l->position[i], b = brume_halved((uint32_t)f->eye[i]);
         sum += mul_both_signed_round(as_signed(a - b), normal[i], 0);
     }
     return sum;
@@ -175,11 +183,22 @@ static void normal_of(int32_t out[3], const int32_t a[3], const int32_t b[3],
         out[i] = -out[i];
 }
 
+/* Rays of the grid along an axis, with those that the lattice has beyond it:
+ * at most 3. */
+static uint32_t rays_of(const struct brume_frame *f, int axis)
+{
+    uint32_t rays = f->lattice[axis];
+#if BRUME_WITH_TEMPORAL
+    rays <<= f->cell_log2[axis];
+#endif
+    return rays;
+}
+
 /* The first ray of the grid that is in tile n of an axis, or one after the
  * last. */
 static uint32_t first_of(const struct brume_frame *f, int axis, uint32_t n)
 {
-    uint32_t rays = f->grid[axis], per = f->lit.tile[axis];
+    uint32_t rays = rays_of(f, axis), per = f->lit.tile[axis];
     uint32_t x = ((n << 16) + per - 1u) / per;
     return x < rays ? x : rays;
 }
@@ -302,7 +321,7 @@ void brume_lamps_begin(struct brume_frame *frame,
     if (c == NULL || l->lamp_count == 0)
         return;
     for (int i = 0; i < 2; i++)
-        f->lit.tile[i] = ((uint32_t)TILES << 16) / f->grid[i];
+        f->lit.tile[i] = ((uint32_t)TILES << 16) / rays_of(f, i);
     for (uint32_t i = 0; i < l->lamp_count; i++) {
         struct brume_lit_lamp *p = &c->lamp[i];
         set_lamp(p, f, scene, &l->lamps[i]);

@@ -14,86 +14,75 @@
 
 #if BRUME_WITH_LAMPS
 
-/* The way from a sample to a lamp. */
+/* The way from a sample to a lamp, in halves of 2^-16 voxels. */
 struct lamp_way {
-    uint32_t m[3];   /* magnitudes times 2^up; the largest is >= 2^30 */
-    uint32_t square; /* high word of their squares' sum, 2^28 .. 3 * 2^30 */
-    uint32_t up;     /* 1 .. 30 */
-    bool minus[3];   /* their signs */
+    int32_t d[3];
+    uint32_t square; /* its square's highest 32 bits: times 2^(32 - zeros) */
+    uint32_t zeros;  /* 6 .. 63 */
 };
 
-/* False beyond the lamp's radius along some axis. */
-BRUME_INLINE bool lamp_way_of(struct lamp_way *w,
-                              const struct brume_lit_lamp *l,
-                              const uint32_t at[3])
+/* The square of the way, < 2^64: three of 2^62 at most. Written out, as
+ * compilers for size keep loops. */
+BRUME_INLINE uint64_t lamp_square(int32_t d[3], const struct brume_lit_lamp *l,
+                                  const uint32_t at[3])
 {
-    uint32_t all = 1;
-    for (int i = 0; i < 3; i++) {
-        uint32_t a = l->position[i], b = at[i];
-        w->minus[i] = a < b;
-        w->m[i] = a < b ? b - a : a - b;
-        if (w->m[i] >= l->radius)
-            return false;
-        all |= w->m[i]; /* < 2^30 */
-    }
-    w->up = leading_zeros(all) - 1u;
-    w->square = 0;
-    for (int i = 0; i < 3; i++) {
-        w->m[i] <<= w->up;
-        w->square += mul_hi_floor(w->m[i], w->m[i]);
-    }
-    if (w->square == 0) /* the lamp's own place: as near as can be */
-        w->square = 1u << 28;
-    return true;
+    d[0] = as_signed(l->position[0] - at[0]);
+    d[1] = as_signed(l->position[1] - at[1]);
+    d[2] = as_signed(l->position[2] - at[2]);
+    return brume_square(d[0]) + brume_square(d[1]) + brume_square(d[2]);
 }
 
 /* 2^62 / d of d >= 2^31, in (2^30, 2^31], up to 2^-16 of itself too low: a
  * line within 1/17, then Newton's y (2 - d y) twice. */
 BRUME_INLINE uint32_t lamp_reciprocal(uint32_t d)
 {
-    uint32_t y = 3031741621u - mul_hi_floor(d, 2021161081u);
+    uint32_t slope = 2021161080u;
+    BRUME_OPAQUE(slope); /* one product, not a dozen shifts and sums */
+    uint32_t y = 3031741620u - mul_hi_floor(d, slope);
     y = mul_hi_floor(y, 0x80000000u - mul_hi_floor(d, y)) << 2;
     return mul_hi_floor(y, 0x80000000u - mul_hi_floor(d, y)) << 2;
 }
 
-/* (size / max(r, size))^2 (1 - (r / radius)^4)^2, Q0.32; 0 beyond the radius.
- */
-BRUME_INLINE uint32_t lamp_fall(const struct brume_lit_lamp *l,
-                                const struct lamp_way *w)
+/* (1 - (r / radius)^4)^2, Q0.32. r / radius >= 2^-16. */
+BRUME_INLINE uint32_t lamp_window(const struct brume_lit_lamp *l,
+                                  uint32_t square, uint32_t zeros)
 {
-    /* (r / radius)^2, Q5.27: square < 12 times that of the radius. Beyond 32
-     * octaves, nothing. */
-    uint32_t down = 2u * (w->up - l->radius_shift);
-    uint32_t q = down < 32 ? mul_hi_floor(w->square, l->per_radius) >> down : 0;
-    if (q >= 1u << 27)
-        return 0;
-    uint32_t window = ~mul_hi_floor(q << 5, q << 5);
-    window = mul_hi_floor(window, window);
-    uint32_t n = leading_zeros(w->square);
-    /* (size / r)^2 = h 2^e, h in Q2.30, 1/2 .. 2 */
-    uint32_t h = mul_hi_floor(l->size, lamp_reciprocal(w->square << n));
-    int32_t e = (int32_t)(n + 2u * w->up) - l->size_shift;
-    if (e > 0 || (e == 0 && h >= 1u << 30))
-        return window;
-    if (e < -33)
-        return 0;
-    h = e >= -2 ? h << (e + 2) : h >> (-2 - e);
-    return mul_hi_floor(h, window);
+    /* (r / radius)^2 < 1, Q31 */
+    uint32_t q =
+        mul_hi_floor(square, l->per_radius) >> (zeros - l->radius_shift);
+    uint32_t window = ~mul_hi_floor(q << 1, q << 1);
+    return mul_hi_floor(window, window);
+}
+
+/* (size / max(r, size))^2, Q0.32. size / r >= 2^-16. */
+BRUME_INLINE uint32_t lamp_fall(const struct brume_lit_lamp *l, uint32_t square,
+                                uint32_t zeros)
+{
+    /* h 2^-down, h in Q2.30, 1/2 .. 2 */
+    uint32_t h = mul_hi_floor(l->size, lamp_reciprocal(square));
+    int32_t down = l->size_shift - (int32_t)zeros;
+    if (down > 0)
+        return h << 1 >> (down - 1);
+    return down == 0 && h < 1u << 30 ? h << 2 : 0xffffffffu;
 }
 
 /// Direction ///
 
-/* Towards the lamp, Q2.30; and 2^32 / its length times 2^-up, as brume_rsqrt
- * has it. */
-static inline void lamp_unit(const struct lamp_way *w, int32_t unit[3])
+/* Towards the lamp, Q2.30, 0 at its own place; and its distance, Q16.16. */
+static inline uint32_t lamp_unit(const struct lamp_way *w, int32_t unit[3])
 {
-    unsigned shift;
-    uint32_t r = brume_rsqrt(w->square, &shift);
+    /* square = x 2^(64 - 2 half), 1/4 <= x < 1 in Q0.32 */
+    uint32_t half = w->zeros >> 1, x = w->square >> (w->zeros & 1u);
+    unsigned none;
+    uint32_t r = brume_rsqrt(x, &none);
     for (int i = 0; i < 3; i++) {
         /* Q32 * Q31 -> Q31 -> Q30 */
-        uint32_t u = mul_hi_floor(w->m[i], r) << shift;
-        unit[i] = with_sign((u >> 1) + (u & 1u), w->minus[i]);
+        uint32_t m = magnitude(w->d[i]);
+        uint32_t u = mul_hi_floor(m << half, r);
+        unit[i] = with_sign((u >> 1) + (u & 1u), w->d[i] < 0);
     }
+    /* sqrt(x) 2^(32 - half), doubled; half >= 3 */
+    return mul_hi_floor(x, r) >> (half - 2u);
 }
 
 /* smoothstep of the angle to a spot's direction, Q0.32. The lamp's own place
@@ -143,20 +132,19 @@ static inline uint32_t lamp_fog(const struct brume_frame *f,
 }
 
 /* exp(-depth between sample and lamp), Q2.30: the volume and fog at the lamp's
- * samples, (i + jitter) / n of the way. */
+ * samples, (i + jitter) / n of the way, which is r long, Q16.16. */
 static inline uint32_t lamp_through(const struct brume_frame *f,
                                     const struct brume_lit_lamp *l,
-                                    const struct lamp_way *w,
-                                    const struct gathered *g,
-                                    const uint32_t p[3], const struct kernel *k)
+                                    const struct lamp_way *w, uint32_t r,
+                                    uint32_t jitter, const uint32_t p[3],
+                                    const struct kernel *k)
 {
     uint32_t at[3], move[3], codes = 0 /* < 64 * 2^16 */, fog = 0;
-    unsigned shift;
     for (int i = 0; i < 3; i++) {
-        int32_t way = with_sign(w->m[i] >> w->up, w->minus[i]);
-        way = mul_signed_round(way, l->per_sample, 0);
+        /* d is below 2^29: it is within the radius */
+        int32_t way = mul_signed_round(w->d[i] * 2, l->per_sample, 0);
         move[i] = (uint32_t)way;
-        at[i] = p[i] + (uint32_t)mul_signed_round(way, g->lamp_jitter << 16, 0);
+        at[i] = p[i] + (uint32_t)mul_signed_round(way, jitter << 16, 0);
     }
     for (uint32_t n = 0; n < l->shadow_samples; n++) {
         codes += lamp_density(f, at, k);
@@ -164,9 +152,6 @@ static inline uint32_t lamp_through(const struct brume_frame *f,
         for (int i = 0; i < 3; i++)
             at[i] += move[i];
     }
-    /* r = square * 1 / sqrt(square), Q31, back to Q16.16 */
-    uint32_t r = brume_rsqrt(w->square, &shift);
-    r = (mul_hi_floor(w->square, r) << shift) >> (w->up - 1u);
     struct brume_number part = brume_number_mul(
         brume_number_of(r, -16), brume_number_of(l->per_sample, -32));
     struct brume_number depth = brume_number_mul(
@@ -195,43 +180,127 @@ BRUME_INLINE uint32_t lamp_times(uint32_t a, int32_t up)
     return up > (int32_t)leading_zeros(a) ? 0xffffffffu : a << up;
 }
 
-/* A lamp's share of what a sample receives, Q12.20. */
-static inline void add_lamp(const struct brume_frame *f,
-                            const struct gathered *g,
-                            const struct brume_lit_lamp *l, const uint32_t p[3],
-                            const uint32_t at[3], const int32_t ray[3],
-                            uint32_t sum[3], const struct kernel *k)
+/* A sample, and what it receives of lamps, Q12.20. */
+struct lamp_sample {
+    const struct brume_frame *frame;
+    const int32_t *ray; /* its direction, Q2.30 */
+    const uint32_t *p;
+    const struct kernel *kernel;
+    uint32_t jitter; /* Q0.16 */
+    uint32_t at[3];  /* p, brume_halved */
+    uint32_t sum[3];
+};
+
+/* What is left of `fall` by spot, shadow and phase function, times 2^*up. */
+static inline uint32_t lamp_rest(const struct lamp_sample *s,
+                                 const struct brume_lit_lamp *l,
+                                 const struct lamp_way *w, uint32_t fall,
+                                 int32_t *up)
 {
-    const struct brume_phase *phase = f->lit.lighting->phase;
-    struct lamp_way w;
-    int32_t unit[3], up = 0;
-    if (!lamp_way_of(&w, l, at))
-        return;
-    uint32_t fall = lamp_fall(l, &w);
-    if (fall == 0)
-        return;
-    if (l->spot || phase != NULL)
-        lamp_unit(&w, unit);
-    if (l->spot) {
+    const struct brume_phase *phase = s->frame->lit.lighting->phase;
+    int32_t unit[3];
+    uint32_t r = lamp_unit(w, unit);
+    if (l->spot)
         fall = mul_hi_floor(fall, lamp_spot(l, unit));
-        if (fall == 0)
-            return;
-    }
+    if (fall == 0)
+        return 0;
     if (l->shadow_samples != 0)
-        fall = mul_hi_floor(fall, lamp_through(f, l, &w, g, p, k)) << 2;
-    if (phase != NULL && (w.m[0] | w.m[1] | w.m[2]) != 0) {
+        fall = mul_hi_floor(fall, lamp_through(s->frame, l, w, r, s->jitter,
+                                               s->p, s->kernel))
+               << 2;
+    if (phase != NULL && (unit[0] | unit[1] | unit[2]) != 0) {
         struct brume_number n =
-            brume_phase_value(phase, brume_one_minus_cos(ray, unit));
+            brume_phase_value(phase, brume_one_minus_cos(s->ray, unit));
         fall = mul_hi_floor(fall, n.m);
-        up = n.e + 32;
+        *up = n.e + 32;
     }
-    for (uint32_t c = 0; c < (brume_has_colour(f) ? 3u : 1u); c++) {
-        uint32_t a = mul_hi_floor(fall, l->colour[c]);
-        if (up != 0)
-            a = lamp_times(a, up);
-        sum[c] = sum[c] + a < a ? 0xffffffffu : sum[c] + a;
-    }
+    return fall;
 }
+
+/* A sum that stays at the most it can be. */
+BRUME_INLINE uint32_t lamp_sum(uint32_t a, uint32_t b)
+{
+    return a + b < b ? 0xffffffffu : a + b;
+}
+
+/* Adds a lamp within whose radius the sample is: any lamp, at any distance. */
+BRUME_APART void add_any_lamp(struct lamp_sample *s,
+                              const struct brume_lit_lamp *l)
+{
+    struct lamp_way w;
+    uint64_t square = lamp_square(w.d, l, s->at);
+    uint32_t high = (uint32_t)(square >> 32), low = (uint32_t)square | 1u;
+    w.zeros = high != 0 ? leading_zeros(high) : 32u + leading_zeros(low);
+    w.square = high != 0 ? high << w.zeros | low >> 1 >> (31u - w.zeros)
+                         : low << (w.zeros - 32u);
+    uint32_t fall = 0xffffffffu;
+    int32_t up = 0;
+    if (w.zeros - l->radius_shift < 32)
+        fall = lamp_window(l, w.square, w.zeros);
+    bool far = l->size_shift > w.zeros + 32u;
+    fall = far ? 0 : mul_hi_floor(fall, lamp_fall(l, w.square, w.zeros));
+    if (l->spot || l->shadow_samples != 0 ||
+        s->frame->lit.lighting->phase != NULL)
+        fall = lamp_rest(s, l, &w, fall, &up);
+    for (int c = 0; c < 3; c++)
+        s->sum[c] = lamp_sum(s->sum[c],
+                             lamp_times(mul_hi_floor(fall, l->colour[c]), up));
+}
+
+/* Adds lamps to the sample's sums: of 32 those whose bits are set. A function
+ * of its own, so that the registers are its own; what it needs seldom is in
+ * another. */
+BRUME_INLINE void add_lamps_of(struct lamp_sample *s,
+                               const struct brume_lit_lamp *lamps,
+                               uint32_t bits, bool colour)
+{
+    const uint32_t at[3] = {s->at[0], s->at[1], s->at[2]};
+    uint32_t sum[3] = {0};
+    while (bits != 0) {
+        uint32_t i = leading_zeros(bits);
+        const struct brume_lit_lamp *l = lamps + i;
+        int32_t d[3];
+        bits -= 0x80000000u >> i;
+        BRUME_OPAQUE(l); /* else each field's address is worked out */
+        uint64_t square = lamp_square(d, l, at);
+        if (square >= l->radius_square)
+            continue;
+        uint32_t high = (uint32_t)(square >> 32), low = (uint32_t)square;
+        if (high == 0 || !l->plain) { /* two voxels, or more to do */
+            add_any_lamp(s, l);
+            continue;
+        }
+        uint32_t zeros = leading_zeros(high);
+        high = high << zeros | low >> 1 >> (31u - zeros);
+        uint32_t fall = mul_hi_floor(lamp_window(l, high, zeros),
+                                     lamp_fall(l, high, zeros));
+        sum[0] = lamp_sum(sum[0], mul_hi_floor(fall, l->colour[0]));
+        if (colour) {
+            sum[1] = lamp_sum(sum[1], mul_hi_floor(fall, l->colour[1]));
+            sum[2] = lamp_sum(sum[2], mul_hi_floor(fall, l->colour[2]));
+        }
+    }
+    for (int c = 0; c < (colour ? 3 : 1); c++)
+        s->sum[c] = lamp_sum(s->sum[c], sum[c]);
+}
+
+BRUME_APART void add_grey_lamps(struct lamp_sample *s,
+                                const struct brume_lit_lamp *lamps,
+                                uint32_t bits)
+{
+    add_lamps_of(s, lamps, bits, false);
+}
+
+#if BRUME_WITH_COLOUR
+BRUME_APART void add_coloured_lamps(struct lamp_sample *s,
+                                    const struct brume_lit_lamp *lamps,
+                                    uint32_t bits)
+{
+    add_lamps_of(s, lamps, bits, true);
+}
+#else
+#define add_coloured_lamps add_grey_lamps
+#endif
 
 /* Where a ray is among the clusters. */
 static inline void begin_lamps(const struct brume_frame *f, struct gathered *g,
@@ -259,26 +328,27 @@ static inline void add_lamps(const struct brume_frame *f, struct gathered *g,
                              uint32_t lost, const struct kernel *k)
 {
     const struct brume_clusters *c = f->lit.clusters;
-    uint32_t axis = g->lamp_axis, sum[3] = {0}, at[3];
+    uint32_t axis = g->lamp_axis;
     uint32_t along = p[axis] - (uint32_t)f->eye[axis];
     if (ray->unit[axis] < 0)
         along = 0u - along;
     while (g->lamp_slice < BRUME_CLUSTER_SLICES - 1u &&
            along >= c->end[g->lamp_slice])
         g->lamp_slice++;
+    struct lamp_sample s = {f, ray->unit, p, k, g->lamp_jitter, {0}, {0}};
     for (int i = 0; i < 3; i++)
-        at[i] = p[i] + 0x80000000u;
+        s.at[i] = brume_halved(p[i]);
     const uint32_t *words =
         c->lamps[g->lamp_slice][g->lamp_tile[1]][g->lamp_tile[0]];
-    for (uint32_t n = 0; n < BRUME_LAMP_WORDS; n++)
-        for (uint32_t bits = words[n]; bits != 0;) {
-            uint32_t i = leading_zeros(bits);
-            bits -= 0x80000000u >> i;
-            add_lamp(f, g, &c->lamp[32u * n + i], p, at, ray->unit, sum, k);
-        }
-    for (uint32_t i = 0; i < (brume_has_colour(f) ? 3u : 1u); i++) {
+    for (uint32_t n = 0; n < BRUME_LAMP_WORDS; n++) {
+        if (brume_has_colour(f))
+            add_coloured_lamps(&s, c->lamp + 32u * n, words[n]);
+        else
+            add_grey_lamps(&s, c->lamp + 32u * n, words[n]);
+    }
+    for (int i = 0; i < 3; i++) {
         /* Q31 * Q20 -> Q29 */
-        uint32_t high = mul_hi_floor(lost, sum[i]), low = lost * sum[i];
+        uint32_t high = mul_hi_floor(lost, s.sum[i]), low = lost * s.sum[i];
         uint32_t a = high >> 22 ? 0xffffffffu : high << 10 | low >> 22;
         g->lamp[i] = g->lamp[i] + a < a ? 0xffffffffu : g->lamp[i] + a;
     }

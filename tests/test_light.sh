@@ -209,6 +209,44 @@ extremes()
         exposure=0.25
 }
 
+# One beside, one in it of three colours, one all of whose reach is its size, a
+# spot with a shadow, one with both cones equal. Distances of the list are parts
+# of 1/64 of the volume's own size.
+lamps()
+{
+    awk -v centre="$1" -v unit="$2" 'BEGIN {
+        split(centre, c, ",")
+        while ((getline <"tests/light.lamps") > 0) {
+            if ($0 ~ /^#/ || NF == 0)
+                continue
+            split($1, p, ",")
+            printf "%g,%g,%g %g %g", c[1] + p[1] * unit, c[2] + p[2] * unit,
+                c[3] + p[3] * unit, $2 * unit, $3 * unit
+            for (i = 4; i <= NF; i++)
+                printf " %s", $i
+            print ""
+        }
+    }' >"$out/$volume_name.lamps"
+    light "lamps" "lamps=$out/$volume_name.lamps"
+    black="sun_colour=0,0,0 lamps=$out/$volume_name.lamps"
+    # shellcheck disable=SC2086
+    light "lamps alone, trilinear" $black filter=trilinear
+    # shellcheck disable=SC2086
+    light "lamps alone, nearest" $black filter=nearest
+    for phase in hg:0.7 droplet:10 hg:-0.99; do
+        # shellcheck disable=SC2086
+        light "lamps alone, $phase" $black "phase=$phase" exposure=0.5
+    done
+    # shellcheck disable=SC2086
+    light "lamps that are dim, albedo 0.5, octaves" $black exposure=0.0625 \
+        albedo=0.5 octaves=4 phase=hg:0.3
+    # shellcheck disable=SC2086
+    light "lamps that are too bright" $black exposure=16
+    # shellcheck disable=SC2086
+    light "lamps, haze, jitter" lamps="$out/$volume_name.lamps" haze=300 \
+        jitter=both noise=white
+}
+
 cones()
 {
     for filter in nearest trilinear; do
@@ -264,18 +302,19 @@ all_of()
     behind "$sun_behind" "$3"
     extremes "$sun_behind" "$4"
     curves
+    lamps "$5" "$6"
 }
 
 # A volume that is always there.
 "$BUILD/brume-cloud" -o "$out/cumulus.vdb" --size 64 >/dev/null
 bake cumulus "$out/cumulus.vdb" --format u8r --mips --sun-cache 2 \
     --sun -75,32 --sky-visibility --sky-extinction 0.15
-all_of cumulus "$cumulus_behind" "100,200,130" "-150 -2"
+all_of cumulus "$cumulus_behind" "100,200,130" "-150 -2" 32,20,32 1
 
 if [ -f "$DATA/wdas_cloud_sixteenth.vdb" ]; then
     bake wdas "$DATA/wdas_cloud_sixteenth.vdb" --format u8 --mips \
         --sun-cache 2 --sun -60,30 --sky-visibility --sky-extinction 0.07
-    all_of wdas "$wdas_behind" "600,1200,960" "-150 -20"
+    all_of wdas "$wdas_behind" "600,1200,960" "-150 -20" -10,75,-41 7
 else
     echo "# REAL VOLUMES ARE NOT IN $DATA" >&2
     skip "light on the Disney cloud: wdas_cloud_sixteenth.vdb absent"
@@ -284,7 +323,7 @@ if [ -f "$DATA/openvdb_smoke1.vdb" ]; then
     # Clamped, as in test_accuracy.sh.
     bake smoke "$DATA/openvdb_smoke1.vdb" --format u8r --max-density 1 \
         --mips --sun-cache 2 --sun 40,20 --sky-visibility --sky-extinction 0.3
-    all_of smoke "$smoke_behind" "1,200,181" "-173 -5"
+    all_of smoke "$smoke_behind" "1,200,181" "-173 -5" -24,33,-13 1.2
 else
     skip "light on the smoke: openvdb_smoke1.vdb absent"
 fi

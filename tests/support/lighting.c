@@ -3,7 +3,7 @@
 
 #if TEST_LIGHTING
 
-#define SLOTS 24
+#define SLOTS 40
 #define ONE 0x10000u
 
 /* A few directions of the upper hemisphere, Q1.7. */
@@ -59,6 +59,78 @@ static void set_colours(struct brume_lighting *l, bool colour)
     }
 }
 
+#if BRUME_WITH_LAMPS
+static struct brume_lamp s_lamps[SLOTS][BRUME_MAX_LAMPS];
+static struct brume_clusters s_clusters;
+
+/* The radius, Q16.16, of a sphere of a tenth of the box's volume; in whole
+ * sixteenths of a voxel: 4/3 pi r^3 = V / 10, V in those is 42 r^3. */
+static uint32_t tenth_of(const struct brume_volume *v)
+{
+    uint64_t box = 4096, r = 16;
+    for (int i = 0; i < 3; i++)
+        box *= v->box_max[i] - v->box_min[i] + 1u;
+    while (42 * (r + 1) * (r + 1) * (r + 1) <= box)
+        r++;
+    return (uint32_t)r << 12;
+}
+
+/* A place from low to high, Q16.16, and moves the seed on. */
+static int32_t place_of(uint32_t *seed, int32_t low, int32_t high)
+{
+    *seed = *seed * 1664525u + 1013904223u;
+    uint32_t room = high > low ? (uint32_t)(high - low) : 0;
+    return low + (int32_t)((uint64_t)room * (*seed >> 8) >> 24);
+}
+
+/* Anywhere in the box such that all of the reach is in it, where it fits. */
+static void set_lamp(struct brume_lamp *p, const struct brume_volume *v,
+                     const struct test_lighting *light, uint32_t *seed)
+{
+    static const struct brume_lamp k_none;
+    *p = k_none;
+    p->radius = tenth_of(v);
+    p->size = 2 * ONE < p->radius ? 2 * ONE : p->radius;
+    p->cos_outer = -(1 << 30);
+    for (int i = 0; i < 3; i++) {
+        int32_t low = v->box_min[i] * 65536, high = v->box_max[i] * 65536;
+        int32_t reach = (int32_t)p->radius, half = (high - low) / 2;
+        reach = reach < half ? reach : half;
+        p->position[i] = place_of(seed, low + reach, high - reach);
+        p->direction[i] = place_of(seed, -1000, 1000);
+        p->colour[i] = 4 * ONE;
+        if (light->colour)
+            p->colour[i] = (uint32_t)place_of(seed, ONE, 8 * ONE);
+    }
+    if (!light->spots)
+        return;
+    p->direction[1] += 2000; /* never none */
+    p->cos_outer = place_of(seed, -(1 << 29), 1 << 29);
+    p->cos_inner = p->cos_outer + place_of(seed, 0, 1 << 28);
+    p->shadow_samples = 3;
+}
+
+static void set_lamps(struct brume_lighting *l,
+                      const struct test_lighting *light, unsigned slot,
+                      const struct brume_volume *v)
+{
+    uint32_t seed = 1;
+    l->lamp_count = light->lamps;
+    l->lamps = s_lamps[slot];
+    l->clusters = &s_clusters;
+    for (uint32_t i = 0; i < light->lamps && i < BRUME_MAX_LAMPS; i++)
+        set_lamp(&s_lamps[slot][i], v, light, &seed);
+}
+#else
+static void set_lamps(struct brume_lighting *l,
+                      const struct test_lighting *light, unsigned slot,
+                      const struct brume_volume *v)
+{
+    l->lamp_count = light->lamps; /* refused */
+    (void)slot, (void)v;
+}
+#endif
+
 void test_lighting_fill(struct brume_scene *out,
                         const struct test_lighting *light, unsigned slot,
                         const struct brume_volume *volume)
@@ -87,6 +159,7 @@ void test_lighting_fill(struct brume_scene *out,
     l->exposure = light->filmic ? ONE / 2 : 0;
     if (light->filmic)
         out->output = BRUME_FILMIC;
+    set_lamps(l, light, slot, volume);
 #if BRUME_WITH_CACHE
     if (out->light == BRUME_CACHE &&
         brume_cache_baked(&s_cache[slot], volume) == BRUME_OK) {

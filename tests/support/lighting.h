@@ -14,6 +14,8 @@ struct test_lighting {
     uint8_t ambient, visibility;
     bool colour, sky, filmic;
     uint8_t blend; /* of the cache with itself, 1/256 */
+    uint8_t lamps; /* so many; of each the reach is a tenth of the box */
+    bool spots;    /* they are, and have shadows */
 };
 
 /* Is there lighting at all in this build, and memory for it? */
@@ -24,8 +26,9 @@ struct test_lighting {
 #define TEST_LIGHTING 0
 #endif
 
-/* Points a scene at that lighting, which lives on, number `slot` < 24 of its
- * kind: a slot always holds the same. `volume` may have a cache. */
+/* Points a scene at that lighting, which lives on, number `slot` < 40 of its
+ * kind: a slot always holds the same, but all share
+ * the clusters of lamps: one frame at a time. `volume` may have a cache. */
 void test_lighting_fill(struct brume_scene *out,
                         const struct test_lighting *light, unsigned slot,
                         const struct brume_volume *volume);

@@ -13,6 +13,8 @@ static struct brume_direction_table s_directions;
 static uint8_t s_codes[2 * CACHE_BYTES];
 static int8_t s_ways[3 * DIRECTIONS];
 static bool s_made;
+static struct brume_lamp s_lamps[BRUME_MAX_LAMPS];
+static struct brume_clusters s_clusters;
 
 static void make_phases(void)
 {
@@ -104,6 +106,34 @@ static void light_of(struct brume_scene *s, const struct brume_volume *v,
     s->light_samples = (uint16_t)below(BRUME_MAX_LOG_SAMPLES + 1u);
 }
 
+/* A few lamps in and around the volume; none in most scenes. */
+static void lamps_of(struct brume_lighting *l, const struct brume_volume *v,
+                     bool grey, uint32_t (*below)(uint32_t))
+{
+    static const struct brume_lamp k_none;
+    l->lamps = s_lamps;
+    l->clusters = &s_clusters;
+    l->lamp_count = below(4) == 0 ? below(BRUME_MAX_LAMPS + 1u) : 0;
+    for (uint32_t n = 0; n < l->lamp_count; n++) {
+        struct brume_lamp *p = &s_lamps[n];
+        *p = k_none;
+        p->radius = ONE + below(60u * ONE);
+        p->size = ONE / 16 + below(p->radius - ONE / 16 + 1u);
+        p->cos_outer = -(1 << 30);
+        if (below(2) == 0)
+            p->cos_outer = (int32_t)below(1u << 30) - (1 << 29);
+        p->cos_inner = p->cos_outer + (int32_t)below(1u << 29);
+        p->shadow_samples = (uint8_t)(below(2) * below(6));
+        colour_of(p->colour, grey, below);
+        for (int i = 0; i < 3; i++) {
+            p->direction[i] = (int32_t)below(21) - 10;
+            p->position[i] = (int32_t)below(12u * v->cell_count[i] * ONE) -
+                             2 * v->cell_count[i] * (int32_t)ONE;
+        }
+        p->direction[1] += 20;
+    }
+}
+
 void random_light_fill(struct brume_scene *out,
                        const struct brume_volume *volume,
                        uint32_t (*below)(uint32_t n))
@@ -123,6 +153,7 @@ void random_light_fill(struct brume_scene *out,
     ambient_of(l, volume, grey, below);
     behind_of(l, below);
     light_of(out, volume, below);
+    lamps_of(l, volume, grey, below);
     l->cache = &s_cache;
     if (below(4) == 0)
         out->filter = BRUME_STOCHASTIC;

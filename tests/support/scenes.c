@@ -226,6 +226,14 @@ const struct test_scene test_scenes[] = {
     LIT_SEQUENCE("seq_lit_window8", 5, BRUME_WINDOW, 8, 0),
     LIT_SEQUENCE("seq_lit_taa", 3, BRUME_TAA, 16, 0),
     LIT_SEQUENCE("seq_lit_half", 2, BRUME_TAA, 16, BRUME_HALF),
+    /* As lit_nothing, with lamps: docs/light.md has what they cost. */
+    LIT("lamps_64", "lit_u8", NEAR, BRUME_LOG, 8, VIEW_FRONT, .lamps = 64),
+    LIT("lamps_colours", "lit_u8", NEAR, BRUME_LOG, 8, VIEW_FRONT, .lamps = 12,
+        .colour = true),
+    LIT("lamps_spots", "lit_u4r_apron", TRI, BRUME_LOG, 8, VIEW_INSIDE,
+        .phase = 1, .octaves = 2, .lamps = 20, .spots = true, .colour = true),
+    LIT("lamps_stochastic", "lit_u8", BRUME_STOCHASTIC, BRUME_CACHE, 0,
+        VIEW_TOP, .phase = 3, .lamps = 40, .spots = true),
 };
 
 const int test_scene_count = sizeof test_scenes / sizeof test_scenes[0];
