@@ -80,6 +80,10 @@ extern const uint16_t brume_exp_fine[256];
  * (IEC 61966-2-1). 510 bytes. */
 extern const uint16_t brume_srgb_threshold[255];
 
+/* Where the search for a code begins: codes of 0, 2^8 .. 2^12, then 2^10 apart
+ * up to 2^14, then 2^12 apart up to 2^16. 41 bytes. */
+extern const uint8_t brume_srgb_start[41];
+
 #if BRUME_WITH_TONE
 /* The same of BRUME_FILMIC, Q16.16. 1020 bytes. */
 extern const uint32_t brume_filmic_threshold[255];

@@ -84,15 +84,20 @@ static uint32_t composed(const struct brume_frame *f,
     return sum < 0x10000u ? sum : 0x10000u;
 }
 
-/* Code of a linear value by binary search of the 255 thresholds: exact
- * rounding, eight comparisons. */
+/* Code of a linear value, at most 65536, exactly rounded: the line between two
+ * entries of brume_srgb_start is below the curve by less than a code, so that
+ * one of the 255 thresholds decides. */
 static uint32_t srgb8(uint32_t linear)
 {
-    uint32_t code = 0;
-    for (uint32_t bit = 128; bit != 0; bit >>= 1)
-        if (linear >= brume_srgb_threshold[code + bit - 1u])
-            code += bit;
-    return code;
+    const uint8_t *at = brume_srgb_start;
+    uint32_t shift = 8;
+    linear -= linear >> 16; /* 65536 has the code of 65535 */
+    for (; linear >> shift >= 16u; shift += 2)
+        at += 12;
+    at += linear >> shift;
+    uint32_t part = linear & ((1u << shift) - 1u);
+    uint32_t code = at[0] + (((uint32_t)at[1] - at[0]) * part >> shift);
+    return code + (linear >= brume_srgb_threshold[code]); /* code < 255 */
 }
 
 /* The code of a linear value in 8 bits. `deep`: in 16, or what deep_code makes
@@ -123,10 +128,16 @@ static void codes_of(const struct brume_frame *f,
                      const struct brume_radiance *in, uint32_t i,
                      uint32_t code[3], int channels, bool deep)
 {
+    uint32_t before = 0;
     if (repeats(in, i))
         return;
-    for (int c = 0; c < channels; c++)
-        code[c] = code_of(f, composed(f, &in[i], c), deep);
+    for (int c = 0; c < channels; c++) {
+        uint32_t linear = composed(f, &in[i], c);
+        /* Over a grey background all three are one. */
+        code[c] =
+            c > 0 && linear == before ? code[c - 1] : code_of(f, linear, deep);
+        before = linear;
+    }
 }
 
 static void pack_l8(const struct brume_frame *f,

@@ -15,11 +15,16 @@ demo: $(T)/demo.elf ## (with CONF=name, ASSET=file.brume) run a board's demo
 # TARGET_STATE_BYTES: of memory for sequences, 0 to leave them out.
 TARGET_SIZE ?= size
 TARGET_STATE_BYTES ?= 98304
+# TARGET_WIDE: render by the wide kernel of hosts, in the compiler's vectors.
+TARGET_WIDE_SRC = $(if $(TARGET_WIDE),tests/targets/wide_rect.c $(patsubst \
+	%,platform/host/%.c,wide wide_march wide_copy pool))
 TARGET_OBJ = $(patsubst %.c,$(T)/%.o,$(wildcard core/*.c) $(TARGET_SRC) \
-	tests/targets/targets.c tests/support/scenes.c tests/support/lighting.c) \
+	$(TARGET_WIDE_SRC) tests/targets/targets.c tests/support/scenes.c \
+	tests/support/lighting.c) \
 	$(patsubst %.S,$(T)/%.o,$(TARGET_ASSETS_SRC))
 TARGET_CPPFLAGS = $(CPPFLAGS) -Iplatform -Itests $(TARGET_DEFINES) \
 	$(if $(TARGET_CONFIG),-DBRUME_CONFIG='"targets/$(TARGET_CONFIG).h"') \
+	$(if $(TARGET_WIDE),-DTARGET_WIDE -DWIDE_NAME=wide_march_generic) \
 	$(if $(TARGET_PIXELS_MAX),-DTARGET_PIXELS_MAX=$(TARGET_PIXELS_MAX)) \
 	-DTARGET_STATE_BYTES=$(TARGET_STATE_BYTES)
 ifeq ($(findstring clang,$(CC)),)

@@ -42,6 +42,21 @@ static double srgb_threshold(int i)
     return 65536.0 * from_srgb((i + 0.5) / 255.0) + 0.5;
 }
 
+static double to_srgb(double v)
+{
+    return v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1 / 2.4) - 0.055;
+}
+
+/* Codes of 0, 2^8 .. 2^12, then in steps of 2^10 up to 2^14 and of 2^12 up to
+ * 2^16. */
+static double srgb_start(int i)
+{
+    double v = i <= 16   ? 256.0 * i
+               : i <= 28 ? 1024.0 * (i - 12)
+                         : 4096.0 * (i - 24);
+    return 255.0 * to_srgb(v / 65536.0);
+}
+
 /* Lowest Q16.16 value that is nearer to code i + 1 than to code i when it went
  * through the curve x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14) before: the
  * positive root of (2.51 - 2.43 y) x^2 + (0.03 - 0.59 y) x - 0.14 y. */
@@ -91,6 +106,7 @@ int main(void)
     table("uint16_t", "brume_exp_coarse", 256, 5, exp_coarse);
     table("uint16_t", "brume_exp_fine", 256, 5, exp_fine);
     table("uint16_t", "brume_srgb_threshold", 255, 5, srgb_threshold);
+    table("uint8_t", "brume_srgb_start", 41, 3, srgb_start);
     printf("\n#if BRUME_WITH_TONE");
     table("uint32_t", "brume_filmic_threshold", 255, 6, filmic_threshold);
     printf("#endif\n\n#if BRUME_WITH_DITHER");

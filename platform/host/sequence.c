@@ -307,14 +307,14 @@ static int one_frame(struct run *r, uint32_t frame)
 static void end_row(struct run *r, uint32_t frame, double start)
 {
     char name[32];
-    const struct profile zero = {{0}, 0, 0};
+    static const struct profile k_zero;
     r->frame.wall += profile_clock() - start;
     r->frame.frames = 1;
     snprintf(name, sizeof name, "frame %lu", (unsigned long)frame);
     if (r->sequence->profile && r->sequence->many)
         profile_print(stderr, name, &r->frame);
     profile_sum(&r->sum, &r->frame);
-    r->frame = zero;
+    r->frame = k_zero;
 }
 
 static int all_frames(struct run *r)

@@ -19,7 +19,8 @@
  *
  * TARGET_PIXELS_MAX leaves out larger frames, for slow emulators; sequences
  * need TARGET_STATE_BYTES of memory beside. With
- * TARGET_TALLY (and BRUME_CONFIG="targets/tally.h") lookups are counted.
+ * TARGET_TALLY (and BRUME_CONFIG="targets/tally.h") lookups are counted. With
+ * TARGET_WIDE the wide kernel of hosts renders, where there is a heap for it.
  */
 #include "target.h"
 
@@ -33,6 +34,18 @@
 #define TARGET_STATE_BYTES 0
 #endif
 #define SEQUENCES (TARGET_STATE_BYTES > 0 && BRUME_WITH_SEQUENCES)
+
+/* The march of hosts instead of the core's; its stack is no concern here. */
+#ifdef TARGET_WIDE
+#include "targets/wide_rect.h"
+#define RENDER_RECT wide_render_rect
+#define TRACE_RECT wide_trace_rect
+#define STACK_USED() 0
+#else
+#define RENDER_RECT brume_render_rect
+#define TRACE_RECT brume_trace_rect
+#define STACK_USED() target_stack_used()
+#endif
 
 static struct brume_volume s_volume;
 static const char *s_volume_name; /* of s_volume, or NULL */
@@ -121,7 +134,7 @@ static void write_line(const char *kind, const char *name, const char *text)
 /* What the core alone takes of the stack: paint, call it, measure. */
 static void measure_stack(void)
 {
-    uint32_t used = target_stack_used();
+    uint32_t used = STACK_USED();
     if (used > s_stack_used)
         s_stack_used = used;
 }
@@ -156,8 +169,8 @@ static uint32_t render(const struct brume_scene *s, uint64_t *count, int *error)
             unsigned cols = s->width - x < w ? s->width - x : w;
             unsigned rows = s->height - y < h ? s->height - y : h;
             uint64_t start = target_instructions();
-            int result = brume_render_rect(&s_frame, x, y, cols, rows,
-                                           BRUME_RGB888, s_buffer, cols * 3);
+            int result = RENDER_RECT(&s_frame, x, y, cols, rows, BRUME_RGB888,
+                                     s_buffer, cols * 3);
             *count += target_instructions() - start;
             if (result != BRUME_OK)
                 *error = result;
@@ -218,7 +231,7 @@ static int draw_frame(uint64_t count[4])
     err[0] = brume_begin_state(state, f);
     count[0] = target_instructions() - start;
     start = target_instructions();
-    err[1] = brume_trace_rect(f, state, 0, 0, f->lattice[0], f->lattice[1]);
+    err[1] = TRACE_RECT(f, state, 0, 0, f->lattice[0], f->lattice[1]);
     count[1] = target_instructions() - start;
     start = target_instructions();
     err[2] = brume_resolve_rect(f, state, 0, 0, f->grid[0], f->grid[1]);
