@@ -14,7 +14,10 @@ struct test_lighting {
     uint8_t ambient, visibility;
     bool colour, sky, filmic;
     uint8_t blend; /* of the cache with itself, 1/256 */
+    uint8_t air;   /* bits: what there is besides the volume */
 };
+
+enum test_air { AIR_FOG = 1, AIR_SHAPES = 2, AIR_SURFACE = 4, AIR_SUN_MAP = 8 };
 
 /* Is there lighting at all in this build, and memory for it? */
 #if BRUME_WITH_LIGHTING && \
@@ -24,8 +27,9 @@ struct test_lighting {
 #define TEST_LIGHTING 0
 #endif
 
-/* Points a scene at that lighting, which lives on, number `slot` < 24 of its
- * kind: a slot always holds the same. `volume` may have a cache. */
+/* Points a scene at that lighting, which lives on, number `slot` < 40 of its
+ * kind: a slot always holds the same. `volume` may have a cache. Surfaces are
+ * of images up to 48x36, and are shared: one frame at a time. */
 void test_lighting_fill(struct brume_scene *out,
                         const struct test_lighting *light, unsigned slot,
                         const struct brume_volume *volume);
