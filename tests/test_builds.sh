@@ -94,7 +94,7 @@ done
 
 # Parts of lighting, likewise; each with the scenes that do not need it.
 for part in AMBIENT=40 COLOUR=40 CONE=40 CACHE=40 STOCHASTIC=40 SKY=40 TONE=40 \
-    DITHER=40 SHADOW=40 LAMPS=40; do
+    DITHER=40 SHADOW=40 LAMPS=40 FOG=40 SURFACE=40; do
     try "without_$(echo "${part%=*}" | tr A-Z a-z)" "${part#*=}" gcc -Os \
         -DBRUME_WITH_U8R=0 -DBRUME_WITH_TRILINEAR=0 -DBRUME_WITH_UNIFORM=0 \
         "-DBRUME_WITH_${part%=*}=0"

@@ -131,6 +131,128 @@ static void set_lamps(struct brume_lighting *l,
 }
 #endif
 
+/// What there is besides the volume ///
+
+#define SURFACE_WIDTH 48
+#define SURFACE_HEIGHT 36
+#define MAP_SIDE 16
+
+static struct brume_fog s_fog[SLOTS];
+static struct brume_fog_shape s_shapes[SLOTS][2];
+static struct brume_surface s_surface;
+static struct brume_sun_map s_sun_map[SLOTS];
+static uint16_t s_depth[SURFACE_HEIGHT][SURFACE_WIDTH];
+static uint16_t s_texels[MAP_SIDE][MAP_SIDE];
+
+static uint32_t most_of(const int32_t v[3])
+{
+    uint32_t most = 1;
+    for (int i = 0; i < 3; i++) {
+        uint32_t m = (uint32_t)(v[i] < 0 ? -v[i] : v[i]);
+        most = m > most ? m : most;
+    }
+    return most;
+}
+
+/* The longest side of the box in voxels, and its middle, Q16.16. */
+static int32_t side_of(const struct brume_volume *v, int32_t middle[3])
+{
+    int32_t side[3];
+    for (int i = 0; i < 3; i++) {
+        side[i] = v->box_max[i] - v->box_min[i] + 1;
+        middle[i] = (v->box_min[i] + v->box_max[i]) * 32768;
+    }
+    return (int32_t)most_of(side);
+}
+
+/* Fog up to the middle of the box; a sphere in it, a box beside that. */
+static void set_fog(struct brume_lighting *l, uint32_t air, unsigned slot,
+                    const struct brume_volume *v)
+{
+    struct brume_fog *fog = &s_fog[slot];
+    struct brume_fog_shape *shapes = s_shapes[slot];
+    int32_t middle[3], side = side_of(v, middle);
+    fog->density = air & AIR_FOG ? 30000000u : 0; /* 0.007 */
+    fog->base = middle[1];
+    fog->falloff = (uint32_t)side * 0x4000u;
+    fog->far = (uint32_t)side * 8u * ONE;
+    fog->shapes = shapes;
+    fog->shape_count = air & AIR_SHAPES ? 2 : 0;
+    for (int i = 0; i < 3; i++) {
+        shapes[0].centre[i] = middle[i];
+        shapes[1].centre[i] = middle[i] + side * (i == 0 ? 0xb000 : 0);
+        shapes[0].half[i] = shapes[1].half[i] = (uint32_t)side * 0x9000u + ONE;
+    }
+    shapes[0].kind = BRUME_FOG_SPHERE;
+    shapes[0].density = 80000000u;
+    shapes[0].softness = ONE / 2;
+    shapes[1].kind = BRUME_FOG_BOX;
+    shapes[1].density = 50000000u;
+    shapes[1].softness = 0;
+    l->fog = fog;
+}
+
+/* Slopes in and around the box, with holes. */
+static void set_surface(struct brume_lighting *l, const struct brume_scene *s)
+{
+    int32_t way[3];
+    for (int i = 0; i < 3; i++)
+        way[i] = s->eye[i] - s->target[i];
+    uint32_t distance = most_of(way); /* of all three, 1 to 1.7 times that */
+    for (uint32_t y = 0; y < SURFACE_HEIGHT; y++)
+        for (uint32_t x = 0; x < SURFACE_WIDTH; x++) {
+            uint32_t part = 14u + (5u * x + 3u * y) % 17u;
+            s_depth[y][x] = (uint16_t)brume_depth_of(distance / 20u * part);
+            if ((x + 7u * y) % 5u == 0)
+                s_depth[y][x] = 65535;
+        }
+    s_surface.depth = s_depth[0];
+    s_surface.stride = SURFACE_WIDTH;
+    l->surface = &s_surface;
+}
+
+/* Bars between the sun and the box, in a plane exactly across it. */
+static void set_sun_map(struct brume_lighting *l, unsigned slot,
+                        const struct brume_scene *s,
+                        const struct brume_volume *v)
+{
+    struct brume_sun_map *m = &s_sun_map[slot];
+    const int32_t *sun = s->sun; /* a few units */
+    int32_t middle[3], side = side_of(v, middle);
+    int32_t a[3] = {sun[1], -sun[0], 0};
+    int32_t d[3] = {-sun[2] * a[1], sun[2] * a[0],
+                    sun[0] * a[1] - sun[1] * a[0]};
+    int32_t step[3] = {side * 0x20000 / (int32_t)most_of(a),
+                       side * 0x20000 / (int32_t)most_of(d),
+                       side * 0x10000 / (int32_t)most_of(sun)};
+    for (int i = 0; i < 3; i++) {
+        m->across[i] = a[i] * step[0];
+        m->down[i] = d[i] * step[1];
+        m->origin[i] =
+            middle[i] + sun[i] * step[2] - m->across[i] / 2 - m->down[i] / 2;
+    }
+    for (int y = 0; y < MAP_SIDE; y++)
+        for (int x = 0; x < MAP_SIDE; x++)
+            s_texels[y][x] = (x ^ y) & 3 ? 65535 : (uint16_t)(900 * y);
+    m->width = m->height = MAP_SIDE;
+    m->stride = MAP_SIDE;
+    m->range = (uint32_t)side * 4u * ONE;
+    m->bias = ONE / 2;
+    m->depth = s_texels[0];
+    l->sun_map = m;
+}
+
+static void set_air(struct brume_lighting *l, uint32_t air, unsigned slot,
+                    const struct brume_scene *s, const struct brume_volume *v)
+{
+    if (air & (AIR_FOG | AIR_SHAPES))
+        set_fog(l, air, slot, v);
+    if (air & AIR_SURFACE)
+        set_surface(l, s);
+    if (air & AIR_SUN_MAP)
+        set_sun_map(l, slot, s, v);
+}
+
 void test_lighting_fill(struct brume_scene *out,
                         const struct test_lighting *light, unsigned slot,
                         const struct brume_volume *volume)
@@ -156,6 +278,7 @@ void test_lighting_fill(struct brume_scene *out,
     l->sky = light->sky;
     l->sun_size = light->sky ? 1u << 22 : 0;
     l->haze = light->sky ? 400 * ONE : 0;
+    set_air(l, light->air, slot, out, volume);
     l->exposure = light->filmic ? ONE / 2 : 0;
     if (light->filmic)
         out->output = BRUME_FILMIC;

@@ -16,7 +16,10 @@ struct test_lighting {
     uint8_t blend; /* of the cache with itself, 1/256 */
     uint8_t lamps; /* so many; of each the reach is a tenth of the box */
     bool spots;    /* they are, and have shadows */
+    uint8_t air;   /* bits: what there is besides the volume */
 };
+
+enum test_air { AIR_FOG = 1, AIR_SHAPES = 2, AIR_SURFACE = 4, AIR_SUN_MAP = 8 };
 
 /* Is there lighting at all in this build, and memory for it? */
 #if BRUME_WITH_LIGHTING && \
@@ -27,8 +30,9 @@ struct test_lighting {
 #endif
 
 /* Points a scene at that lighting, which lives on, number `slot` < 40 of its
- * kind: a slot always holds the same, but all share
- * the clusters of lamps: one frame at a time. `volume` may have a cache. */
+ * kind: a slot always holds the same. Surfaces, of images up to 48x36, and the
+ * clusters of lamps are shared: one frame at a time. `volume` may have a
+ * cache. */
 void test_lighting_fill(struct brume_scene *out,
                         const struct test_lighting *light, unsigned slot,
                         const struct brume_volume *volume);

@@ -5,6 +5,7 @@
 #define CACHE_BYTES 65536u
 #define DIRECTIONS (8u * 16u * 4u)
 #define MODELS 4
+#define DEPTHS 1024u /* of surfaces up to 24x24 and of sun maps */
 
 static struct brume_lighting s_lighting;
 static struct brume_cache s_cache;
@@ -15,6 +16,11 @@ static int8_t s_ways[3 * DIRECTIONS];
 static bool s_made;
 static struct brume_lamp s_lamps[BRUME_MAX_LAMPS];
 static struct brume_clusters s_clusters;
+static struct brume_fog s_fog;
+static struct brume_fog_shape s_shape;
+static struct brume_surface s_surface;
+static struct brume_sun_map s_sun_map;
+static uint16_t s_depth[DEPTHS];
 
 static void make_phases(void)
 {
@@ -77,6 +83,64 @@ static void behind_of(struct brume_lighting *l, uint32_t (*below)(uint32_t))
     colour_of(l->sky_zenith, false, below);
     colour_of(l->sky_horizon, false, below);
     l->haze = below(2) == 0 ? 0 : ONE + below(1000u * ONE);
+}
+
+/* Now and then, as it is slow and the core's own. */
+static void fog_of(struct brume_lighting *l, const struct brume_volume *v,
+                   uint32_t (*below)(uint32_t))
+{
+    s_fog.density = below(2) * below(1u << below(32));
+    s_fog.base = (int32_t)below(100u * ONE);
+    s_fog.falloff = below(2) * (ONE + below(50u * ONE));
+    s_fog.far = ONE + below(200u * ONE);
+    s_fog.shapes = &s_shape;
+    s_fog.shape_count = below(2);
+    s_shape.kind = (uint8_t)below(2);
+    s_shape.softness = below(ONE + 1u);
+    s_shape.density = below(1u << below(32));
+    for (int i = 0; i < 3; i++) {
+        s_shape.centre[i] = (int32_t)below(v->box_max[i] * 2u * ONE);
+        s_shape.half[i] = ONE + below(40u * ONE);
+    }
+    l->fog = &s_fog;
+}
+
+/* Across the sun when that is along +y; else the frame is refused. */
+static void sun_map_of(struct brume_lighting *l, struct brume_scene *s,
+                       uint32_t (*below)(uint32_t))
+{
+    static const struct brume_sun_map k_none;
+    s->sun[0] = s->sun[2] = 0;
+    s->sun[1] = 1;
+    s_sun_map = k_none;
+    s_sun_map.width = (uint16_t)(1u + below(32));
+    s_sun_map.height = (uint16_t)(1u + below(32));
+    s_sun_map.stride = 32;
+    s_sun_map.depth = s_depth;
+    s_sun_map.range = (16u + below(200)) * ONE;
+    s_sun_map.bias = below(2u * ONE);
+    for (int i = 0; i < 3; i++)
+        s_sun_map.origin[i] = (int32_t)below(80u * ONE);
+    s_sun_map.across[0] = (int32_t)(ONE + below(80u * ONE));
+    s_sun_map.down[2] = -(int32_t)(ONE + below(80u * ONE));
+    l->sun_map = &s_sun_map;
+}
+
+static void surface_of(struct brume_lighting *l, const struct brume_scene *s,
+                       uint32_t (*below)(uint32_t))
+{
+    uint32_t distance = 1;
+    for (int i = 0; i < 3; i++) {
+        int32_t way = s->eye[i] / 2 - s->target[i] / 2;
+        distance += (uint32_t)(way < 0 ? -way : way);
+    }
+    for (uint32_t i = 0; i < DEPTHS; i++)
+        s_depth[i] =
+            (uint16_t)(below(6) == 0 ? 65535u * below(2)
+                                     : brume_depth_of(below(distance) * 2u));
+    s_surface.depth = s_depth;
+    s_surface.stride = 24;
+    l->surface = &s_surface;
 }
 
 /* False when there is no room for it. */
@@ -155,6 +219,12 @@ void random_light_fill(struct brume_scene *out,
     light_of(out, volume, below);
     lamps_of(l, volume, grey, below);
     l->cache = &s_cache;
+    if (below(3) == 0)
+        surface_of(l, out, below);
+    if (below(16) == 0)
+        sun_map_of(l, out, below);
+    if (below(32) == 0)
+        fog_of(l, volume, below);
     if (below(4) == 0)
         out->filter = BRUME_STOCHASTIC;
     if (below(3) == 0)

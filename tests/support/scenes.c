@@ -46,6 +46,39 @@ static const struct brume_noise_table k_noise_table = {k_noise, 3, 3, 1, 4};
         } \
     }
 
+/* The same with fog, a surface or a sun map. */
+#define AIR(name, volume, filter, light, samples, view, ...) \
+    { \
+        name, volume, 48, 36, filter, light, samples, J_BOTH, \
+            BRUME_NOISE_RANK1, 2 * ONE, 9, view, false, false, NULL, \
+            &(const struct test_lighting) \
+        { \
+            __VA_ARGS__ \
+        } \
+    }
+#define AIR_SEQUENCE(name, frames, temporal, bits, resolution, ...) \
+    { \
+        name, "lit_u8", 48, 36, NEAR, BRUME_LOG, 8, J_BOTH, BRUME_NOISE_RANK1, \
+            2 * ONE, 15, VIEW_FRONT, false, false, \
+            &(const struct test_sequence){frames, \
+                                          temporal, \
+                                          bits, \
+                                          3, \
+                                          BRUME_FETCH_CATMULL_ROM, \
+                                          BRUME_CLAMP_VARIANCE, \
+                                          0, \
+                                          resolution, \
+                                          0, \
+                                          BRUME_UPSAMPLE_AWARE, \
+                                          true, \
+                                          0, \
+                                          4}, \
+            &(const struct test_lighting) \
+        { \
+            __VA_ARGS__ \
+        } \
+    }
+
 /* The same over time. */
 #define LIT_SEQUENCE(name, frames, temporal, bits, resolution) \
     { \
@@ -234,6 +267,29 @@ const struct test_scene test_scenes[] = {
         .phase = 1, .octaves = 2, .lamps = 20, .spots = true, .colour = true),
     LIT("lamps_stochastic", "lit_u8", BRUME_STOCHASTIC, BRUME_CACHE, 0,
         VIEW_TOP, .phase = 3, .lamps = 40, .spots = true),
+    AIR("air_fog", "lit_u8", NEAR, BRUME_LOG, 8, VIEW_FRONT, .octaves = 2,
+        .air = AIR_FOG),
+    AIR("air_shapes", "lit_u4r_apron", TRI, BRUME_CONE, 10, VIEW_SUN,
+        .phase = 1, .octaves = 3, .ambient = BRUME_AMBIENT_GRADIENT,
+        .visibility = BRUME_SKY_BAKED, .colour = true,
+        .air = AIR_FOG | AIR_SHAPES),
+    AIR("air_cache", "lit_u4r_apron", BRUME_STOCHASTIC, BRUME_CACHE, 6,
+        VIEW_TOP, .octaves = 2, .air = AIR_SHAPES),
+    AIR("air_inside", "lit_u8", TRI, BRUME_UNIFORM, 20, VIEW_INSIDE,
+        .ambient = BRUME_AMBIENT_CUBE, .visibility = BRUME_SKY_SAMPLED,
+        .air = AIR_FOG | AIR_SHAPES),
+    AIR("air_surface", "lit_u8", TRI, BRUME_LOG, 8, VIEW_FRONT, .octaves = 1,
+        .air = AIR_SURFACE),
+    AIR("air_sun_map", "lit_u4r_apron", NEAR, BRUME_LOG, 8, VIEW_FRONT,
+        .octaves = 2, .air = AIR_SUN_MAP),
+    AIR("air_all", "lit_u8", NEAR, BRUME_LOG, 8, VIEW_FRONT, .phase = 2,
+        .octaves = 2, .colour = true, .sky = true,
+        .air = AIR_FOG | AIR_SHAPES | AIR_SURFACE | AIR_SUN_MAP),
+    AIR_SEQUENCE("seq_air_taa", 3, BRUME_TAA, 16, 0, .air = AIR_FOG),
+    AIR_SEQUENCE("seq_air_window", 3, BRUME_WINDOW, 16, 0,
+                 .air = AIR_FOG | AIR_SHAPES),
+    AIR_SEQUENCE("seq_air_half", 2, BRUME_EMA, 8, BRUME_HALF,
+                 .air = AIR_FOG | AIR_SURFACE | AIR_SUN_MAP),
 };
 
 const int test_scene_count = sizeof test_scenes / sizeof test_scenes[0];
