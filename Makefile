@@ -67,6 +67,7 @@ demo: deps ## make a cloud (or take VDB=file), bake it, draw pictures of it
 	@$(MAKE) --no-print-directory -j$(JOBS) all
 	@BUILD=$(BUILD) VDB="$(VDB)" sh platform/host/demo.sh
 include bench/bench.mk
+include lab/atlas/atlas.mk
 endif
 
 test: test-deps ## build and run every test of this machine
