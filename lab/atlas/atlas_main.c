@@ -12,17 +12,20 @@
 #include "atlas.h"
 #include "image.h"
 #include "metrics.h"
+#include "pattern.h"
 
 static const char k_usage[] =
     "usage: brume-atlas volume NAME u8|u8r|u4r OUT.brume [OUT.float]\n"
     "       brume-atlas leap NAME OUT.pfm PIXELS LARGE SMALL SIGMA_T DEPTH\n"
     "       brume-atlas panels GAIN A B C OUT.png\n"
+    "       brume-atlas average A_%d.pfm FIRST LAST OUT.pfm\n"
     "       brume-atlas repeats A B DX\n"
     "       brume-atlas mean A [X0 Y0 X1 Y1]\n"
     "\n"
     "  volume   a volume of the atlas, as asset and as float dump\n"
     "  leap     it by long steps with a step back, straight down z\n"
     "  panels   three pictures side by side: linear light times GAIN, in sRGB\n"
+    "  average  the mean of grey frames FIRST to LAST\n"
     "  repeats  how alike the error B - A is to itself DX pixels aside: its\n"
     "           correlation, 1 for a tile that repeats\n"
     "  mean     of all samples, or of a rectangle's, in 1/255\n";
@@ -103,6 +106,46 @@ static int panels(char **argv)
 
 /// Measures ///
 
+/* Adds a frame to the sums, which the first one makes. */
+static int add_frame(const char *path, double **sum, struct image *frame)
+{
+    image_free(frame);
+    if (load(path, frame))
+        return 2;
+    if (frame->f32 == NULL || frame->channels != 1)
+        return fail("average: frames must be grey .pfm");
+    if (*sum == NULL)
+        *sum = calloc(image_samples(frame), sizeof **sum);
+    if (*sum == NULL)
+        return fail("average: no memory");
+    for (size_t i = 0; i < image_samples(frame); i++)
+        (*sum)[i] += (double)frame->f32[i];
+    return 0;
+}
+
+static int average(char **argv)
+{
+    struct image frame = {0};
+    double *sum = NULL;
+    char err[400], name[PATTERN_SIZE];
+    int first = atoi(argv[2]), last = atoi(argv[3]), status = 0;
+    if (pattern_check(argv[1], err, sizeof err))
+        return fail(err);
+    if (first < 0 || last < first)
+        return fail("average: FIRST to LAST");
+    for (int k = first; k <= last && status == 0; k++) {
+        pattern_name(argv[1], (uint32_t)k, name);
+        status = add_frame(name, &sum, &frame);
+    }
+    for (size_t i = 0; status == 0 && i < image_samples(&frame); i++)
+        frame.f32[i] = (float)(sum[i] / (last - first + 1));
+    if (status == 0 && image_write(argv[4], &frame, err, sizeof err))
+        status = fail(err);
+    image_free(&frame);
+    free(sum);
+    return status;
+}
+
 /* Correlation of e(x) and e(x + dx), about the mean error. */
 static int repeats(char **argv)
 {
@@ -166,6 +209,8 @@ int main(int argc, char **argv)
         return atlas_leap(argc - 1, argv + 1);
     if (strcmp(name, "panels") == 0 && argc == 7)
         return panels(argv + 1);
+    if (strcmp(name, "average") == 0 && argc == 6)
+        return average(argv + 1);
     if (strcmp(name, "repeats") == 0 && argc == 5)
         return repeats(argv + 1);
     if (strcmp(name, "mean") == 0 && (argc == 3 || argc == 7))

@@ -22,7 +22,13 @@ quiet()
 ## Pictures
 
 # volume NAME [FORMAT]: $work/NAME.brume and NAME.float, of FORMAT u8
-volume() { quiet "$atlas" volume "$1" "${2:-u8}" "$work/$1.brume" "$work/$1.float"; }
+volume()
+{
+    quiet "$atlas" volume "$1" "${2:-u8}" "$work/$1.brume" "$work/$1.float"
+}
+
+# volume_alone NAME: without the float dump, which may be large
+volume_alone() { quiet "$atlas" volume "$1" u8 "$work/$1.brume"; }
 
 # scene LINES: of all pictures from here on; what it does not say is plain
 scene()

@@ -11,9 +11,10 @@
 #include "atlas.h"
 #include "out_file.h"
 
-#define FULL 65280u          /* density 1 */
-#define OF_255(k) ((k)*256u) /* density k / 255, exact in all formats but u4r \
-                              */
+#define FULL 65280u /* density 1 */
+#define OF_255(k) \
+    ((k)*256u) /* density k / 255, exact in all formats but u4r \
+                */
 
 /// Densities ///
 
@@ -80,7 +81,7 @@ static uint32_t in_veil(int x, int y, int z, const void *context)
 /* Long and thin, along z. */
 static uint32_t in_beam(int x, int y, int z, const void *context)
 {
-    static const int low[3] = {2, 2, 0}, high[3] = {22, 22, 4000};
+    static const int low[3] = {2, 2, 1}, high[3] = {22, 22, 3999};
     (void)context;
     return box(x, y, z, low, high);
 }
@@ -89,7 +90,7 @@ static uint32_t in_beam(int x, int y, int z, const void *context)
 static uint32_t in_slope(int x, int y, int z, const void *context)
 {
     (void)context;
-    if (!within(x, 0, 64) || !within(y, 4, 60) || !within(z, 20, 44))
+    if (!within(x, 4, 60) || !within(y, 4, 60) || !within(z, 20, 44))
         return 0;
     return (uint32_t)(1000 + 1000 * x);
 }
@@ -100,7 +101,7 @@ static uint32_t in_spikes(int x, int y, int z, const void *context)
 {
     int odd = (x / 8 + y / 8 + z / 8) % 2;
     (void)context;
-    if (!within(y, 4, 60) || !within(z, 20, 44))
+    if (!within(x, 4, 60) || !within(y, 4, 60) || !within(z, 20, 44))
         return 0;
     if (odd && x % 8 == 4 && y % 8 == 4 && z % 8 == 4)
         return FULL;
@@ -125,12 +126,12 @@ static uint32_t in_strands(int x, int y, int z, const void *context)
                : 0;
 }
 
-/* A ball of radius 20 at the far end of the longest pool there is, or at its
+/* A ball of radius 12 at the far end of the longest pool there is, or at its
  * beginning: what is near the eye is the same. */
 static uint32_t ball(int x, int y, int z)
 {
-    int d = (x - 32) * (x - 32) + (y - 32) * (y - 32) + (z - 32) * (z - 32);
-    return d < 400 ? FULL / 400 * (uint32_t)(400 - d) : 0;
+    int d = (x - 16) * (x - 16) + (y - 16) * (y - 16) + (z - 16) * (z - 16);
+    return d < 144 ? OF_255((uint32_t)(255 * (144 - d) / 144)) : 0;
 }
 
 static uint32_t in_ball(int x, int y, int z, const void *context)
@@ -139,7 +140,7 @@ static uint32_t in_ball(int x, int y, int z, const void *context)
     return ball(x, y, z);
 }
 
-#define FAR (8 * 4095 - 64) /* voxels from the pool's corner */
+#define FAR (8 * 4095 - 32) /* voxels from the pool's corner */
 
 static uint32_t in_far_ball(int x, int y, int z, const void *context)
 {
@@ -169,8 +170,8 @@ static const struct {
     {"spikes", {8, 8, 8}, in_spikes, NULL},
     {"plain", {6, 3, 32}, in_plain, NULL},
     {"strands", {8, 8, 8}, in_strands, NULL},
-    {"ball", {8, 8, 8}, in_ball, NULL},
-    {"farball", {8, 8, 4095}, in_far_ball, NULL},
+    {"ball", {4, 4, 4}, in_ball, NULL},
+    {"farball", {4, 4, 4095}, in_far_ball, NULL},
 };
 #define VOLUMES (sizeof k_volumes / sizeof k_volumes[0])
 

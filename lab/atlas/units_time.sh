@@ -1,0 +1,244 @@
+# SPDX-License-Identifier: MIT
+# Where accumulation, noise and filters fail: motion, time, tiles, outlines.
+
+# still: a cloud in steps of 8 that jitter moves, and in $work/converged.pfm the
+# mean over 64 even jitters: what any good noise tends to.
+still()
+{
+    volume cloud
+    scene "eye = 32,60,150
+target = 32,32,32
+fov = 32
+density_scale = 0.3
+step = 8
+jitter = primary"
+    for k in 0 1 2 3 4 5 6 7; do
+        for l in 0 1 2 3 4 5 6 7; do
+            head -c 64 /dev/zero |
+                tr '\0' "$(printf '\\%03o' $((32 * k + 4 * l + 2)))"
+        done
+    done >"$work/even.8x8x64.raw"
+    draw_frames even cloud 63 --set "noise=$work/even.8x8x64.raw"
+    quiet "$atlas" average "$work/even_%d.pfm" 0 63 "$work/converged.pfm"
+}
+
+# still_ema NOISE: the last of 32 frames in $work/NOISE.pfm
+still_ema()
+{
+    draw_frames "$1" cloud 31 --set temporal=ema --set "noise=$1"
+    mv "$work/$1_31.pfm" "$work/$1.pfm"
+}
+
+## IGN under EMA
+
+unit_ign_ema()
+{
+    still
+    for noise in ign ign-thesis white fast; do
+        still_ema $noise
+    done
+    for noise in ign ign-thesis; do
+        row $noise "cloud at rest; steps of 8" "ema 0.1; 32 frames" rmse \
+            "$(error rmse converged $noise)" 1/255 \
+            "mean of 64 even jitters" fast "$(error rmse converged fast)"
+    done
+    heat heat converged ign 10
+    heat heat_fast converged fast 10
+    picture 1 heat.png heat_fast.png converged.pfm
+}
+claim_ign_ema() { claim_better 1 1.2; }
+
+## Independent blue noise over time
+
+unit_blue_over_time()
+{
+    still
+    for noise in blue-slices white stbn fast; do
+        still_ema $noise
+    done
+    row blue-slices "cloud at rest; steps of 8" "ema 0.1; 32 frames" rmse \
+        "$(error rmse converged blue-slices)" 1/255 \
+        "mean of 64 even jitters" fast "$(error rmse converged fast)"
+    row blue-slices "cloud at rest; steps of 8" "ema 0.1; 32 frames" rmse \
+        "$(error rmse converged blue-slices)" 1/255 \
+        "mean of 64 even jitters" stbn "$(error rmse converged stbn)"
+    row white "cloud at rest; steps of 8" "ema 0.1; 32 frames" rmse \
+        "$(error rmse converged white)" 1/255 \
+        "mean of 64 even jitters" fast "$(error rmse converged fast)"
+    heat heat converged blue-slices 10
+    heat heat_fast converged fast 10
+    picture 1 heat.png heat_fast.png converged.pfm
+}
+claim_blue_over_time() { claim_better 1 1.2; claim_better 2 1.1; }
+
+## Tiles of noise
+
+unit_noise_tiling()
+{
+    still
+    for noise in white8 fast-tiny fast; do
+        draw $noise cloud --set noise=$noise
+    done
+    for noise in white8 fast-tiny; do
+        case $noise in white8) side=8 ;; *) side=32 ;; esac
+        row $noise "cloud; steps of 8" "one frame; $side pixels aside" \
+            repeats "$("$atlas" repeats "$work/converged.pfm" \
+                "$work/$noise.pfm" $side)" correlation \
+            "0 for noise that does not repeat" "fast" \
+            "$("$atlas" repeats "$work/converged.pfm" "$work/fast.pfm" $side)"
+    done
+    picture 1 white8.pfm fast.pfm converged.pfm
+}
+claim_noise_tiling() { claim_better 1 3; claim_better 2 3; }
+
+## Ghosts of a moving camera
+
+# pan FRAME: where the target is
+pan() { calc "12 + 2.5 * $1"; }
+
+unit_ema_ghosting()
+{
+    volume cloud
+    scene "eye = 32,32,150
+fov = 30
+density_scale = 0.3
+step = 4
+jitter = primary
+noise = fast
+subpixel = off"
+    printf '[0]\ntarget = 12,32,32\n[15]\ntarget = %s,32,32\n' "$(pan 15)" \
+        >"$work/path"
+    for temporal in none ema taa; do
+        draw_frames $temporal cloud 15 --path "$work/path" \
+            --set temporal=$temporal
+    done
+    for k in 12 13 14 15; do
+        truth truth_$k cloud --set step=0.25 --set jitter=none \
+            --set noise=none --set "target=$(pan $k),32,32"
+    done
+    for metric in ghosting lag; do
+        case $metric in lag) of=frames ;; *) of=1/255 ;; esac
+        row "ema 0.1" "camera pans 3 pixels a frame" "frames 12 to 15" \
+            $metric "$(error_over $metric truth_%d ema_%d 12:15)" $of \
+            "reference; step 0.25" taa \
+            "$(error_over $metric truth_%d taa_%d 12:15)"
+    done
+    row "ema 0.1" "camera pans 3 pixels a frame" "frames 12 to 15" ghosting \
+        "$(error_over ghosting truth_%d ema_%d 12:15)" 1/255 \
+        "reference; step 0.25" "no history" \
+        "$(error_over ghosting truth_%d none_%d 12:15)"
+    picture 1 ema_15.pfm taa_15.pfm truth_15.pfm
+}
+claim_ema_ghosting() { claim_better 1 3; claim_better 2 3; claim_better 3 3; }
+
+## Lag behind a moving sun
+
+unit_ema_lag()
+{
+    volume cloud
+    scene "eye = 32,60,150
+target = 32,32,32
+fov = 32
+density_scale = 0.5
+light_density_scale = 0.2
+light = uniform
+light_samples = 32
+light_step = 1
+step = 2
+jitter = primary
+noise = fast"
+    printf '[0]\nsun = 0 20\n[31]\nsun = 155 20\n' >"$work/path"
+    draw_frames slow cloud 31 --path "$work/path" --set temporal=ema
+    draw_frames fast cloud 31 --path "$work/path" --set temporal=ema \
+        --set alpha=0.5
+    for k in 28 29 30 31; do
+        truth truth_$k cloud --set jitter=none --set noise=none \
+            --set step=0.5 --set "sun=$((5 * k)) 20"
+    done
+    for metric in lag ghosting; do
+        case $metric in lag) of=frames ;; *) of=1/255 ;; esac
+        row "ema 0.1" "the sun moves 5 degrees a frame" "frames 28 to 31" \
+            $metric "$(error_over $metric truth_%d slow_%d 28:31)" $of \
+            "reference; step 0.5" "ema 0.5" \
+            "$(error_over $metric truth_%d fast_%d 28:31)"
+    done
+    picture 1.5 slow_31.pfm fast_31.pfm truth_31.pfm
+}
+claim_ema_lag() { claim_better 1 3; claim_better 2 2; }
+
+## Small things in motion under TAA
+
+unit_taa_small()
+{
+    volume dots
+    scene "eye = 32,32,150
+fov = 40
+density_scale = 8
+step = 0.5
+jitter = primary
+noise = fast
+subpixel = on"
+    printf '[0]\ntarget = 22,30,32\n[15]\ntarget = 37,32.5,32\n' >"$work/path"
+    for temporal in none taa; do
+        draw_frames $temporal dots 15 --path "$work/path" \
+            --set temporal=$temporal
+    done
+    for k in 12 13 14 15; do
+        scene "eye = 32,32,150
+size = 416x312
+fov = 40
+density_scale = 8
+step = 0.25
+target = $((22 + k)),$(calc "30 + $k / 6"),32"
+        truth big_$k dots
+    done
+    for temporal in none taa; do
+        for k in 12 13 14 15; do mean_of ${temporal}_$k; done >"$work/means"
+        calc "($(tr '\n' '+' <"$work/means")0) / 4" >"$work/$temporal.mean"
+    done
+    for k in 12 13 14 15; do mean_of big_$k; done >"$work/means"
+    whole=$(calc "($(tr '\n' '+' <"$work/means")0) / 4")
+    row taa "single voxels; half a pixel wide" \
+        "camera pans a pixel a frame" light_lost \
+        "$(calc "100 * (1 - $(cat "$work/taa.mean") / $whole)")" "%" \
+        "reference; 16 rays a pixel" "no history" \
+        "$(calc "100 * (1 - $(cat "$work/none.mean") / $whole)")"
+    scene "eye = 32,32,150
+fov = 40
+density_scale = 8
+step = 0.25
+target = 37,32.5,32"
+    truth shown dots
+    picture 2 taa_15.pfm none_15.pfm shown.pfm
+}
+claim_taa_small() { claim_breaks 1 20; claim_better 1 2; }
+
+## Outlines under a blur
+
+unit_blur_outline()
+{
+    volume block
+    scene "eye = 100,70,130
+target = 32,32,32
+fov = 36
+density_scale = 1
+step = 1"
+    truth truth block
+    for spatial in box3 box5 bilateral15; do
+        draw plain_$spatial block --set spatial=$spatial \
+            --set edge_falloff=0
+        draw aware_$spatial block --set spatial=$spatial \
+            --set edge_falloff=16
+        for metric in worst_tile mean; do
+            [ $metric != mean ] || continue
+            row "$spatial" "dense block before a dark sky" \
+                "edge_falloff 0" $metric \
+                "$(error $metric truth plain_$spatial)" 1/255 \
+                "reference; not filtered" "edge_falloff 16" \
+                "$(error $metric truth aware_$spatial)"
+        done
+    done
+    heat heat truth plain_box5 128
+    picture 1 plain_box5.pfm aware_box5.pfm truth.pfm
+}
+claim_blur_outline() { claim_better 1 3; claim_better 2 3; claim_better 3 3; }
