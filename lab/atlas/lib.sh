@@ -170,7 +170,7 @@ claim_better()
     v=$(field "$1" value) w=$(field "$1" remedy_value)
     verdict "$(field "$1" method) $(field "$1" metric) $v; \
 $(field "$1" remedy) $w: at least $2 times smaller" \
-        "($v)^2 >= $2 * $2 * ($w)^2"
+        "($v)^2 > 0 && ($v)^2 >= $2 * $2 * ($w)^2"
 }
 
 # claim_within ROW COLUMN BOUND: the figure is at most the bound, signs aside

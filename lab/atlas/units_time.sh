@@ -1,10 +1,22 @@
 # SPDX-License-Identifier: MIT
 # Where accumulation, noise and filters fail: motion, time, tiles, outlines.
 
-# still: a cloud in steps of 8 that jitter moves, and in $work/converged.pfm the
-# mean over 64 even jitters: what any good noise tends to.
+# even: $work/even.8x8x64.raw, a noise that in each of 64 frames is one value
+# everywhere: their mean is what any good noise tends to
+even()
+{
+    for k in 0 1 2 3 4 5 6 7; do
+        for l in 0 1 2 3 4 5 6 7; do
+            head -c 64 /dev/zero |
+                tr '\0' "$(printf '\\%03o' $((32 * k + 4 * l + 2)))"
+        done
+    done >"$work/even.8x8x64.raw"
+}
+
+# still: a cloud in steps of 8 that jitter moves, and $work/converged.pfm
 still()
 {
+    even
     volume cloud
     scene "eye = 32,60,150
 target = 32,32,32
@@ -12,12 +24,6 @@ fov = 32
 density_scale = 0.3
 step = 8
 jitter = primary"
-    for k in 0 1 2 3 4 5 6 7; do
-        for l in 0 1 2 3 4 5 6 7; do
-            head -c 64 /dev/zero |
-                tr '\0' "$(printf '\\%03o' $((32 * k + 4 * l + 2)))"
-        done
-    done >"$work/even.8x8x64.raw"
     draw_frames even cloud 63 --set "noise=$work/even.8x8x64.raw"
     quiet "$atlas" average "$work/even_%d.pfm" 0 63 "$work/converged.pfm"
 }
@@ -31,22 +37,34 @@ still_ema()
 
 ## IGN under EMA
 
+# How far a frame moves the pattern decides. By 5.588238 on both axes (Jimenez
+# 2014) a pixel's jitters are spread well over time, and there is no failure;
+# by the thesis's offsets they are not.
 unit_ign_ema()
 {
     still
-    for noise in ign ign-thesis white fast; do
+    for noise in ign ign-thesis fast golden; do
         still_ema $noise
     done
-    for noise in ign ign-thesis; do
-        row $noise "cloud at rest; steps of 8" "ema 0.1; 32 frames" rmse \
-            "$(error rmse converged $noise)" 1/255 \
-            "mean of 64 even jitters" fast "$(error rmse converged fast)"
+    for remedy in ign golden; do
+        row ign-thesis "cloud at rest; steps of 8" "ema 0.1; 32 frames" rmse \
+            "$(error rmse converged ign-thesis)" 1/255 \
+            "mean of 64 even jitters" $remedy "$(error rmse converged $remedy)"
     done
-    heat heat converged ign 10
-    heat heat_fast converged fast 10
-    picture 1 heat.png heat_fast.png converged.pfm
+    row ign "cloud at rest; steps of 8" "ema 0.1; 32 frames" rmse \
+        "$(error rmse converged ign)" 1/255 "mean of 64 even jitters" fast \
+        "$(error rmse converged fast)"
+    heat heat converged ign-thesis 5
+    heat heat_better converged golden 5
+    picture 1 heat.png heat_better.png converged.pfm
 }
-claim_ign_ema() { claim_better 1 1.2; }
+claim_ign_ema()
+{
+    claim_better 1 1.2
+    claim_better 2 1.4
+    verdict "ign with its own offsets is as good as fast: $(field 3 value), \
+$(field 3 remedy_value)" "$(field 3 value) <= 1.1 * $(field 3 remedy_value)"
+}
 
 ## Independent blue noise over time
 
@@ -73,23 +91,44 @@ claim_blue_over_time() { claim_better 1 1.2; claim_better 2 1.1; }
 
 ## Tiles of noise
 
+# A face at one distance from the eye: all that a ray can be wrong by is its
+# jitter, so a table shows as itself.
+# tiles NOISE SIDE REMEDY: a row
+tiles()
+{
+    row "$1" "flat face; steps of 32" "one frame; $2 pixels aside" repeats \
+        "$("$atlas" repeats "$work/converged.pfm" "$work/$1.pfm" "$2")" \
+        correlation "0 for noise that does not repeat" "$3" \
+        "$("$atlas" repeats "$work/converged.pfm" "$work/$3.pfm" "$2")"
+}
+
 unit_noise_tiling()
 {
-    still
-    for noise in white8 fast-tiny fast; do
-        draw $noise cloud --set noise=$noise
+    even
+    volume block
+    scene "eye = 32,32,1000
+target = 32,32,32
+fov = 2
+density_scale = 0.05
+step = 32
+jitter = primary"
+    draw_frames even block 63 --set "noise=$work/even.8x8x64.raw"
+    quiet "$atlas" average "$work/even_%d.pfm" 0 63 "$work/converged.pfm"
+    for noise in white8 fast-small fast white; do
+        draw $noise block --set noise=$noise
     done
-    for noise in white8 fast-tiny; do
-        case $noise in white8) side=8 ;; *) side=32 ;; esac
-        row $noise "cloud; steps of 8" "one frame; $side pixels aside" \
-            repeats "$("$atlas" repeats "$work/converged.pfm" \
-                "$work/$noise.pfm" $side)" correlation \
-            "0 for noise that does not repeat" "fast" \
-            "$("$atlas" repeats "$work/converged.pfm" "$work/fast.pfm" $side)"
-    done
-    picture 1 white8.pfm fast.pfm converged.pfm
+    tiles white8 8 fast
+    tiles fast-small 32 fast
+    tiles fast 64 white
+    picture 1 white8.pfm white.pfm converged.pfm
 }
-claim_noise_tiling() { claim_better 1 3; claim_better 2 3; }
+claim_noise_tiling()
+{
+    for r in 1 2 3; do
+        claim_breaks $r 0.7
+        claim_within $r remedy_value 0.1
+    done
+}
 
 ## Ghosts of a moving camera
 
@@ -102,19 +141,17 @@ unit_ema_ghosting()
     scene "eye = 32,32,150
 fov = 30
 density_scale = 0.3
-step = 4
-jitter = primary
-noise = fast
-subpixel = off"
+step = 4"
     printf '[0]\ntarget = 12,32,32\n[15]\ntarget = %s,32,32\n' "$(pan 15)" \
         >"$work/path"
     for temporal in none ema taa; do
         draw_frames $temporal cloud 15 --path "$work/path" \
+            --set jitter=primary --set noise=fast --set subpixel=off \
             --set temporal=$temporal
     done
     for k in 12 13 14 15; do
-        truth truth_$k cloud --set step=0.25 --set jitter=none \
-            --set noise=none --set "target=$(pan $k),32,32"
+        truth truth_$k cloud --set step=0.25 \
+            --set "target=$(pan $k),32,32"
     done
     for metric in ghosting lag; do
         case $metric in lag) of=frames ;; *) of=1/255 ;; esac
@@ -144,16 +181,14 @@ light_density_scale = 0.2
 light = uniform
 light_samples = 32
 light_step = 1
-step = 2
-jitter = primary
-noise = fast"
+step = 2"
     printf '[0]\nsun = 0 20\n[31]\nsun = 155 20\n' >"$work/path"
-    draw_frames slow cloud 31 --path "$work/path" --set temporal=ema
+    draw_frames slow cloud 31 --path "$work/path" --set temporal=ema \
+        --set jitter=primary --set noise=fast
     draw_frames fast cloud 31 --path "$work/path" --set temporal=ema \
-        --set alpha=0.5
+        --set jitter=primary --set noise=fast --set alpha=0.5
     for k in 28 29 30 31; do
-        truth truth_$k cloud --set jitter=none --set noise=none \
-            --set step=0.5 --set "sun=$((5 * k)) 20"
+        truth truth_$k cloud --set step=0.5 --set "sun=$((5 * k)) 20"
     done
     for metric in lag ghosting; do
         case $metric in lag) of=frames ;; *) of=1/255 ;; esac
@@ -215,30 +250,32 @@ claim_taa_small() { claim_breaks 1 20; claim_better 1 2; }
 
 ## Outlines under a blur
 
+# Light in the column of sky left of a block, which is opaque.
+beside() { "$atlas" mean "$work/$1.pfm" 20 25 21 53; }
+
 unit_blur_outline()
 {
     volume block
-    scene "eye = 100,70,130
-target = 32,32,32
+    scene "eye = 32,32,150
+target = 31.5,31.5,32
 fov = 36
-density_scale = 1
-step = 1"
+density_scale = 4
+step = 0.5"
     truth truth block
     for spatial in box3 box5 bilateral15; do
         draw plain_$spatial block --set spatial=$spatial \
             --set edge_falloff=0
         draw aware_$spatial block --set spatial=$spatial \
             --set edge_falloff=16
-        for metric in worst_tile mean; do
-            [ $metric != mean ] || continue
-            row "$spatial" "dense block before a dark sky" \
-                "edge_falloff 0" $metric \
-                "$(error $metric truth plain_$spatial)" 1/255 \
-                "reference; not filtered" "edge_falloff 16" \
-                "$(error $metric truth aware_$spatial)"
-        done
+        row "$spatial" "opaque block before a dark sky" "edge_falloff 0" \
+            light_beside "$(beside plain_$spatial)" 1/255 \
+            "$(beside truth) in the reference" "edge_falloff 16" \
+            "$(beside aware_$spatial)"
     done
     heat heat truth plain_box5 128
     picture 1 plain_box5.pfm aware_box5.pfm truth.pfm
 }
-claim_blur_outline() { claim_better 1 3; claim_better 2 3; claim_better 3 3; }
+claim_blur_outline()
+{
+    for r in 1 2 3; do claim_better $r 10; done
+}
