@@ -612,7 +612,10 @@ struct brume_scene {
     uint64_t density_scale;       /* Q32.32, extinction on view rays */
     uint64_t light_density_scale; /* Q32.32, extinction on light rays */
     uint64_t min_density;         /* Q32.32; not above: no sample */
-    uint64_t max_density;         /* Q32.32; clamps voxels; 0: none */
+    /* Q32.32; clamps voxels; 0: none. Counted in density_max / 65280, rounded
+     * down: less than one of them is BRUME_ERR_SCENE, n of them are up to
+     * 1 / (n + 1) too low. */
+    uint64_t max_density;
     uint32_t albedo;              /* Q0.16 */
     uint32_t step;                /* Q16.16 voxels */
     uint32_t light_step;          /* Q16.16 voxels */
