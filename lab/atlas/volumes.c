@@ -42,7 +42,7 @@ static uint32_t in_cloud(int x, int y, int z, const void *context)
 {
     static const struct density_cloud cloud = {64, 7};
     (void)context;
-    return density_in_cloud(x, y, z, &cloud);
+    return OF_255(density_in_cloud(x, y, z, &cloud) / 256);
 }
 
 /* One voxel thick, facing z. */
