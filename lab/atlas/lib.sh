@@ -11,6 +11,13 @@ die()
     exit 1
 }
 
+# skip FILE: the unit needs that real volume, which is not there
+skip()
+{
+    echo "SKIP $unit: $1 is not in $DATA"
+    : >"$work/skipped"
+}
+
 # quiet COMMAND...: its output is shown when it fails
 quiet()
 {
@@ -29,6 +36,15 @@ volume()
 
 # volume_alone NAME: without the float dump, which may be large
 volume_alone() { quiet "$atlas" volume "$1" u8 "$work/$1.brume"; }
+
+# real_volume FILE: of $DATA, as $work/real.brume and real.float
+real_volume()
+{
+    [ -f "$DATA/$1" ] || return
+    [ -x "$BUILD/brume-bake" ] || die "no $BUILD/brume-bake"
+    quiet "$BUILD/brume-bake" "$DATA/$1" -o "$work/real.brume" --format u8 \
+        --mips --dump-float "$work/real.float"
+}
 
 # scene LINES: of all pictures from here on; what it does not say is plain
 scene()

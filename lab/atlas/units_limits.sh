@@ -31,6 +31,51 @@ claim_extinction()
     done
 }
 
+# The same with light, on a cloud whose densities go from 1/255 to 1: with
+# trilinear lookups the least trace beside a voxel is opaque in the end, and
+# codes of 1/65280 and places of 1/256 voxel no longer tell where it begins.
+unit_extinction_lit()
+{
+    volume cloud
+    scene "eye = 32,60,150
+target = 32,32,32
+fov = 32
+sun = 40 30
+step = 1
+light = uniform
+light_samples = 64
+light_step = 1"
+    for filter in nearest trilinear; do
+        for sigma in 0.0001 0.01 1 100 1000 1000000; do
+            truth truth$sigma cloud --set filter=$filter \
+                --set density_scale=$sigma --set light_density_scale=$sigma
+            draw on$sigma cloud --set filter=$filter \
+                --set density_scale=$sigma --set light_density_scale=$sigma
+            figure=$(error rmse truth$sigma on$sigma)
+            case $filter in
+            nearest)
+                remedy="none needed" remedy_figure=0
+                echo "$figure" >"$work/nearest$sigma"
+                ;;
+            *) remedy=nearest remedy_figure=$(cat "$work/nearest$sigma") ;;
+            esac
+            row "brume's integers" "lit cloud; $filter" "extinction $sigma" \
+                rmse "$figure" 1/255 "reference; same lattice" "$remedy" \
+                "$remedy_figure"
+        done
+    done
+    heat heat truth1000000 on1000000 64
+    picture 1 on1000000.pfm heat.png truth1000000.pfm
+}
+# Rows 1 to 6 are nearest, 7 to 12 trilinear. From 100 per voxel on, a sample
+# that double precision sees on the other side of a face is a whole pixel.
+claim_extinction_lit()
+{
+    for r in 1 2 3 5 6 7 8 9 10; do claim_within $r value 0.35; done
+    for r in 4 11; do claim_within $r value 0.6; done
+    claim_better 12 50
+}
+
 ## Underflow along faint rays
 
 # Optical depth tau over 4000 voxels, in steps of which each takes tau * 2.5e-4
@@ -101,6 +146,96 @@ claim_far_coordinates()
     claim_within 1 value 0.5
     verdict "an eye beyond the limit: exit status $(field 2 value)" \
         "$(field 2 value) == 2"
+}
+
+## Faint clamps
+
+# Counted in 1/65280 of the volume's largest density, rounded down: below that
+# a clamp is refused. The extinction is such that the truth stays the same.
+unit_max_density()
+{
+    volume cloud
+    scene "eye = 32,60,150
+target = 32,32,32
+fov = 32
+step = 1"
+    for limit in 0.1 0.001 0.0001 0.00002; do
+        scale=$(awk "BEGIN { print 0.1 / $limit }")
+        truth truth$limit cloud --set max_density=$limit \
+            --set "density_scale=$scale"
+        draw on$limit cloud --set max_density=$limit \
+            --set "density_scale=$scale"
+        row max_density "cloud; unlit" "max_density $limit" mean \
+            "$(error mean truth$limit on$limit)" 1/255 \
+            "reference; float clamp" "max_density 0.1" \
+            "$(error mean truth0.1 on0.1)"
+    done
+    "$brume" render "$work/cloud.brume" --scene "$work/scene" \
+        --set max_density=0.00001 -o "$work/beyond.pfm" 2>"$work/refusal"
+    row max_density "cloud; unlit" "max_density 0.00001" exit_status $? \
+        status "$(grep -c 'at least 1/65280' "$work/refusal") line names the \
+limit" "max_density 0.1" 0
+    [ ! -f "$work/beyond.pfm" ] || die "a picture from beyond the limit"
+    heat heat truth0.00002 on0.00002 64
+    picture 1 on0.00002.pfm on0.1.pfm truth0.00002.pfm
+}
+claim_max_density()
+{
+    claim_within 1 value 0.05
+    claim_better 4 100
+    verdict "a clamp of nothing: exit status $(field 5 value)" \
+        "$(field 5 value) == 2"
+}
+
+## Borders of the scene
+
+# border KEY INSIDE OUTSIDE: the last value that is taken, and one that is not
+border()
+{
+    quiet "$brume" render "$work/block.brume" --scene "$work/scene" \
+        --set "$1=$2" -o "$work/inside.pfm"
+    rm -f "$work/beyond.pfm"
+    "$brume" render "$work/block.brume" --scene "$work/scene" \
+        --set "$1=$3" -o "$work/beyond.pfm" 2>"$work/refusal"
+    border_status=$?
+    [ ! -f "$work/beyond.pfm" ] || die "a picture beyond $1"
+    [ "$(wc -l <"$work/refusal")" -eq 1 ] || die "$1: not one line"
+    grep -q "$1" "$work/refusal" || die "$1 is not named"
+    row "limit of $1" block "$1 $(echo "$3" | tr , ' ')" exit_status \
+        $border_status status "refused in one line; no picture" \
+        "$1 $(echo "$2" | tr , ' ')" 0
+}
+
+unit_borders()
+{
+    volume block
+    scene "eye = 100,70,130
+target = 32,32,32
+fov = 36
+step = 0.5"
+    border step 0.0625 0.06
+    border step 256 257
+    border light_step 0.0625 0.06
+    border light_step 256 257
+    border fov 1 0.99
+    border fov 160 160.1
+    border eye 32766,32,32 32767,32,32
+    border density_scale 4294967295 4294967296
+    border light_samples 4096 4097
+    border size 16384x1 16385x1
+    border alpha 0.015625 0.0156
+    border min_transmittance 1 1.01
+    draw left block --set step=0.0625
+    draw middle block --set step=256
+    truth truth block --set step=0.0625
+    picture 1 middle.pfm left.pfm truth.pfm
+}
+claim_borders()
+{
+    for r in 1 2 3 4 5 6 7 8 9 10 11 12; do
+        verdict "$(field $r setting): exit status $(field $r value)" \
+            "$(field $r value) == 2"
+    done
 }
 
 ## Few bits
