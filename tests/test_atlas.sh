@@ -35,7 +35,8 @@ is_table()
 # is_small UNIT: a picture of a few kilobytes
 is_small()
 {
-    [ -s "$work/atlas/$1.png" ] && [ "$(wc -c <"$work/atlas/$1.png")" -lt 40000 ]
+    [ -s "$work/atlas/$1.png" ] &&
+        [ "$(wc -c <"$work/atlas/$1.png")" -lt 40000 ]
 }
 
 refused()

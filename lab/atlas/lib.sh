@@ -83,7 +83,7 @@ draw_frames()
         --frames "0:$draw_last" "$@" -o "$work/${draw_out}_%d.pfm"
 }
 
-# draw_ema OUT VOLUME OPTIONS...: the last of 32 jittered frames in $work/OUT.pfm
+# draw_ema OUT VOLUME OPTIONS...: the last of 32 jittered frames, OUT.pfm
 draw_ema()
 {
     ema_out=$1 ema_volume=$2

@@ -291,3 +291,71 @@ step = 0.5"
     picture 1 u4r.pfm heat.png truth.pfm
 }
 claim_brick_seams() { claim_better 1 3; claim_better 2 3; }
+
+## Few grey levels
+
+# FLIP, since the eye judges: dithering trades bands for noise, which RMSE
+# counts against it.
+unit_few_levels()
+{
+    volume cloud
+    scene "eye = 32,60,150
+target = 32,32,32
+fov = 26
+sun = 40 30
+density_scale = 0.3
+light_density_scale = 0.05
+light = uniform
+light_samples = 64
+light_step = 1
+filter = trilinear
+output = srgb
+background = 0.1"
+    for bits in 1 2 4; do
+        for dither in off on; do
+            quiet "$brume" render "$work/cloud.brume" --scene "$work/scene" \
+                --pixels l$bits --set dither=$dither --set noise=blue \
+                -o "$work/l$bits$dither.png"
+        done
+    done
+    quiet "$brume" render "$work/cloud.brume" --scene "$work/scene" \
+        --pixels l8 -o "$work/l8.png"
+    for bits in 1 2 4; do
+        row "l$bits; no dithering" "lit cloud" "$bits bits; sRGB" flip \
+            "$(flip l8 l${bits}off)" "FLIP; 0 to 1" "8 bits" "dither; blue" \
+            "$(flip l8 l${bits}on)"
+    done
+    picture 1 l2off.png l2on.png l8.png
+}
+flip()
+{
+    "$brume" compare "$work/$1.png" "$work/$2.png" --metrics flip |
+        sed 's/^.*=//'
+}
+claim_few_levels()
+{
+    for r in 1 2 3; do claim_better $r 2; done
+}
+
+## A stochastic lookup in one frame
+
+unit_stochastic_lookup()
+{
+    volume cloud
+    scene "eye = 32,60,150
+target = 32,32,32
+fov = 26
+density_scale = 0.3
+step = 1"
+    truth truth cloud --set filter=trilinear
+    draw one cloud --set filter=stochastic --set noise=fast
+    draw_frames many cloud 31 --set filter=stochastic --set noise=fast \
+        --set temporal=ema
+    mv "$work/many_31.pfm" "$work/many.pfm"
+    row "filter = stochastic" "cloud; unlit" "one frame" rmse \
+        "$(error rmse truth one)" 1/255 "reference; trilinear" \
+        "ema 0.1; 32 frames" "$(error rmse truth many)"
+    heat heat truth one 20
+    picture 1 heat.png many.pfm truth.pfm
+}
+claim_stochastic_lookup() { claim_better 1 2; }

@@ -279,3 +279,93 @@ claim_blur_outline()
 {
     for r in 1 2 3; do claim_better $r 10; done
 }
+
+## Few rays in motion
+
+# bayer4 marches one ray of sixteen: what it holds history to spans 12 x 12.
+unit_sparse_rays()
+{
+    volume cloud
+    scene "eye = 32,32,150
+fov = 30
+density_scale = 0.3
+step = 4"
+    printf '[0]\ntarget = 12,32,32\n[15]\ntarget = %s,32,32\n' "$(pan 15)" \
+        >"$work/path"
+    for update in bayer4 checker; do
+        draw_frames $update cloud 15 --path "$work/path" \
+            --set jitter=primary --set noise=fast --set subpixel=off \
+            --set temporal=taa --set update=$update
+    done
+    for k in 12 13 14 15; do
+        truth truth_$k cloud --set step=0.25 \
+            --set "target=$(pan $k),32,32"
+    done
+    row "taa; update = bayer4" "camera pans 3 pixels a frame" \
+        "frames 12 to 15" ghosting \
+        "$(error_over ghosting truth_%d bayer4_%d 12:15)" 1/255 \
+        "reference; step 0.25" "update = checker" \
+        "$(error_over ghosting truth_%d checker_%d 12:15)"
+    row "taa; update = bayer4" "camera pans 3 pixels a frame" \
+        "frames 12 to 15" flicker \
+        "$(error_over flicker truth_%d bayer4_%d 12:15)" 1/255 \
+        "reference; step 0.25" "update = checker" \
+        "$(error_over flicker truth_%d checker_%d 12:15)"
+    picture 1 bayer4_15.pfm checker_15.pfm truth_15.pfm
+}
+claim_sparse_rays() { claim_better 1 2; claim_better 2 2; }
+
+## Low resolution at outlines
+
+unit_low_resolution()
+{
+    volume block
+    scene "eye = 100,70,130
+target = 32,32,32
+fov = 36
+density_scale = 1
+step = 0.5"
+    truth truth block
+    draw full block
+    for resolution in half quarter; do
+        for upsample in bilinear aware; do
+            draw $resolution$upsample block --set resolution=$resolution \
+                --set upsample=$upsample
+            row "resolution = $resolution; $upsample" "opaque block" \
+                "one frame" rmse \
+                "$(error rmse truth $resolution$upsample)" 1/255 \
+                "reference; full" "resolution = full" \
+                "$(error rmse truth full)"
+        done
+    done
+    picture 1 quarterbilinear.pfm quarteraware.pfm truth.pfm
+}
+claim_low_resolution()
+{
+    for r in 1 2 3 4; do claim_better $r 5; done
+    verdict "aware ($(field 4 value)) does not help an opaque edge over \
+bilinear ($(field 3 value))" "$(field 4 value) >= 0.98 * $(field 3 value)"
+}
+
+## A short history in few bits
+
+unit_eight_bit_history()
+{
+    still
+    for bits in 8 16; do
+        draw_frames b$bits cloud 255 --set temporal=ema \
+            --set alpha=0.015625 --set noise=fast --set history_bits=$bits
+    done
+    row "ema; 8 bits" "cloud at rest; steps of 8" "alpha 1/64; frames 224 on" \
+        deviation "$(error_over deviation converged b8_%d 224:255)" 1/255 \
+        "mean of 64 even jitters" "history_bits 16" \
+        "$(error_over deviation converged b16_%d 224:255)"
+    row "ema; 8 bits" "cloud at rest; steps of 8" "alpha 1/64; frame 255" \
+        rmse "$(error rmse converged b8_255)" 1/255 \
+        "mean of 64 even jitters" "history_bits 16" \
+        "$(error rmse converged b16_255)"
+    heat heat8 converged b8_255 5
+    heat heat16 converged b16_255 5
+    picture 1 heat8.png heat16.png converged.pfm
+}
+claim_eight_bit_history() { claim_better 1 3; claim_better 2 2; }
