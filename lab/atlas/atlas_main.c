@@ -81,9 +81,12 @@ static void put_panel(struct image *to, const struct image *from, int x0,
 static int panels(char **argv)
 {
     struct image p[3] = {{0}, {0}, {0}}, all = {0};
-    double gain = strtod(argv[1], NULL);
-    char err[400] = "";
-    int status = 0, width = -GAP, height = 0, x = 0;
+    char err[400] = "", *end;
+    double gain = strtod(argv[1], &end);
+    int status = end != argv[1] && *end == '\0' && gain > 0
+                     ? 0
+                     : fail("panels: GAIN must be above 0"),
+        width = -GAP, height = 0, x = 0;
     for (int i = 0; i < 3 && status == 0; i++) {
         status = load(argv[2 + i], &p[i]);
         width += p[i].width + GAP;
@@ -147,34 +150,41 @@ static int average(char **argv)
 }
 
 /* Correlation of e(x) and e(x + dx), about the mean error. */
+static double correlation(const struct image *a, const struct image *b,
+                          double bias, int dx)
+{
+    double both = 0, square = 0, pairs = 0, samples = 0;
+    for (int y = 0; y < a->height; y++)
+        for (int x = 0; x < a->width; x++) {
+            double d = value(b, x, y, 0) - value(a, x, y, 0) - bias;
+            square += d * d;
+            samples++;
+            if (x + dx < a->width) {
+                both += d * (value(b, x + dx, y, 0) - value(a, x + dx, y, 0) -
+                             bias);
+                pairs++;
+            }
+        }
+    return square > 0 ? both / pairs / (square / samples) : 0;
+}
+
 static int repeats(char **argv)
 {
     struct image a = {0}, b = {0};
     struct metrics_error e;
     char err[400];
-    int dx = atoi(argv[3]);
-    double both = 0, square = 0, pairs = 0, samples = 0;
-    if (load(argv[1], &a) || load(argv[2], &b))
-        return 2;
-    if (metrics_error(&a, &b, &e, err, sizeof err))
-        return fail(err);
-    if (dx < 1 || dx >= a.width)
-        return fail("repeats: DX must be 1 to the width - 1");
-    for (int y = 0; y < a.height; y++)
-        for (int x = 0; x < a.width; x++) {
-            double d = value(&b, x, y, 0) - value(&a, x, y, 0) - e.mean / 255;
-            square += d * d;
-            samples++;
-            if (x + dx < a.width) {
-                both += d * (value(&b, x + dx, y, 0) - value(&a, x + dx, y, 0) -
-                             e.mean / 255);
-                pairs++;
-            }
-        }
-    printf("%.6f\n", square > 0 ? both / pairs / (square / samples) : 0);
+    int dx = atoi(argv[3]), status = load(argv[1], &a);
+    if (status == 0)
+        status = load(argv[2], &b);
+    if (status == 0 && metrics_error(&a, &b, &e, err, sizeof err))
+        status = fail(err);
+    if (status == 0 && (dx < 1 || dx >= a.width))
+        status = fail("repeats: DX must be 1 to the width - 1");
+    if (status == 0)
+        printf("%.6f\n", correlation(&a, &b, e.mean / 255, dx));
     image_free(&a);
     image_free(&b);
-    return 0;
+    return status;
 }
 
 static int mean(int argc, char **argv)
@@ -187,8 +197,10 @@ static int mean(int argc, char **argv)
     for (int i = 0; argc == 6 && i < 4; i++)
         r[i] = atoi(argv[2 + i]);
     if (r[0] < 0 || r[1] < 0 || r[2] > a.width || r[3] > a.height ||
-        r[0] >= r[2] || r[1] >= r[3])
+        r[0] >= r[2] || r[1] >= r[3]) {
+        image_free(&a);
         return fail("mean: the rectangle is not inside");
+    }
     for (int y = r[1]; y < r[3]; y++)
         for (int x = r[0]; x < r[2]; x++)
             for (int c = 0; c < a.channels; c++)

@@ -66,6 +66,11 @@ int atlas_leap(int argc, char **argv)
         number(argv[4], &m.large) || number(argv[5], &m.small) ||
         number(argv[6], &m.sigma_t) || number(argv[7], &m.depth))
         return 2;
+    if (size > IMAGE_MAX_SIDE) {
+        fprintf(stderr, "brume-atlas: leap: more than %d pixels\n",
+                IMAGE_MAX_SIDE);
+        return 2;
+    }
     int n = (int)size, bad = image_new_f32(&image, n, n, 1, err, sizeof err);
     if (!bad) {
         for (int i = 0; i < n * n; i++)
