@@ -112,9 +112,12 @@ static int panels(char **argv)
 /* Adds a frame to the sums, which the first one makes. */
 static int add_frame(const char *path, double **sum, struct image *frame)
 {
+    int width = frame->width, height = frame->height;
     image_free(frame);
     if (load(path, frame))
         return 2;
+    if (*sum && (frame->width != width || frame->height != height))
+        return fail("average: frames of different sizes");
     if (frame->f32 == NULL || frame->channels != 1)
         return fail("average: frames must be grey .pfm");
     if (*sum == NULL)

@@ -201,6 +201,63 @@ step = 2"
 }
 claim_ema_lag() { claim_better 1 3; claim_better 2 2; }
 
+## How long a jump lasts
+
+# settles PICTURE_%d: frames after the jump at frame 8 until the error is below
+# a tenth of what the jump changed; 56 when it never is
+settles()
+{
+    quiet "$brume" compare "$work/after.pfm" "$work/$1.pfm" --frames 8:63 \
+        --metrics rmse --csv "$work/$1.csv"
+    awk -F, -v jump="$(error rmse after before)" '
+        NR > 1 && !found && $2 < jump / 10 { print $1 - 8; found = 1 }
+        END { if (!found) print 56 }' "$work/$1.csv"
+}
+
+# The sun jumps, as by a switch: what is before it stays in the history.
+unit_ema_jump()
+{
+    volume cloud
+    scene "eye = 32,60,150
+target = 32,32,32
+fov = 32
+density_scale = 0.5
+light_density_scale = 0.2
+light = uniform
+light_samples = 32
+light_step = 1
+step = 1"
+    printf '[0]\nsun = -100 20\n[7]\nsun = -100 20\n[8]\nsun = 80 20\n' \
+        >"$work/path"
+    { cat "$work/path" && echo "cut = on"; } >"$work/cut"
+    truth before cloud --set step=0.5 --set "sun=-100 20"
+    truth after cloud --set step=0.5 --set "sun=80 20"
+    draw_frames tenth cloud 63 --path "$work/path" --set temporal=ema \
+        --set jitter=primary --set noise=fast
+    draw_frames slow cloud 63 --path "$work/path" --set temporal=ema \
+        --set alpha=0.015625 --set jitter=primary --set noise=fast
+    draw_frames window cloud 63 --path "$work/path" --set temporal=window \
+        --set jitter=primary --set noise=fast
+    draw_frames cut cloud 63 --path "$work/cut" --set temporal=ema \
+        --set jitter=primary --set noise=fast
+    row "ema 0.1" "the sun jumps by 180 degrees" "to a tenth of the change" \
+        frames "$(settles tenth_%d)" frames "reference; step 0.5" \
+        "window of 8" "$(settles window_%d)"
+    row "ema 1/64" "the sun jumps by 180 degrees" "to a tenth of the change" \
+        frames "$(settles slow_%d)" "frames; 56 is never" \
+        "reference; step 0.5" "window of 8" "$(settles window_%d)"
+    row "ema 0.1" "the sun jumps by 180 degrees" "to a tenth of the change" \
+        frames "$(settles tenth_%d)" frames "reference; step 0.5" \
+        "cut = on" "$(settles cut_%d)"
+    picture 1.5 tenth_12.pfm cut_12.pfm after.pfm
+}
+claim_ema_jump()
+{
+    claim_better 1 2
+    claim_better 2 4
+    claim_within 3 remedy_value 0
+}
+
 ## Small things in motion under TAA
 
 unit_taa_small()
