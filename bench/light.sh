@@ -92,7 +92,7 @@ for volume in disney cumulus smoke; do
                 ms=$(fastest "$volume" "$sun" "$out/light.png" filter=$filter \
                     $(echo "${kind#*:}" | tr : ' '))
                 metrics=$("$BUILD/brume" compare "$out/light.png" \
-                    "$out/light_true.png")
+                    "$out/light_true.png" --metrics rmse,mean,max)
                 echo "$volume,$sun,$filter,${kind%%:*},$(value rmse),$(value \
                     mean),$(value max),$ms" >>"$csv"
             done
@@ -159,7 +159,7 @@ stochastic()
         for frame in $(seq 0 31); do
             metrics=$("$BUILD/brume" compare \
                 "$(printf '%s/stochastic_%02d.png' "$out" "$frame")" \
-                "$out/light_true.png")
+                "$out/light_true.png" --metrics rmse,mean)
             echo "$volume,$noise,$frame,$(value rmse),$(value mean)"
         done
     done

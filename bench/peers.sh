@@ -71,7 +71,8 @@ render_of_openvdb()
         set -- "$@" --set "$pair"
     done
     "$BUILD/brume" render "$volumes/cloud256.brume" "$@" -o "$out/ours.ppm"
-    rmse=$("$BUILD/brume" compare "$out/vdb_render.ppm" "$out/ours.ppm" |
+    rmse=$("$BUILD/brume" compare "$out/vdb_render.ppm" "$out/ours.ppm" \
+        --metrics rmse |
         sed -n 's/^rmse=//p')
     echo "$spent" | awk -F'[ms ]' -v rmse="$rmse" -v ours="$(awk -F, \
         'NR > 1 { printf "%s %s ", $1, $5 }' \

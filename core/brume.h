@@ -763,16 +763,25 @@ struct brume_scene {
     int32_t up[3];             /* any length; see brume_begin_frame */
     uint32_t fov;              /* vertical, degrees, Q16.16 */
 
-    int32_t sun[3];               /* towards the sun, any length > 0 */
-    uint64_t density_scale;       /* Q32.32, extinction on view rays */
-    uint64_t light_density_scale; /* Q32.32, extinction on light rays */
-    uint64_t min_density;         /* Q32.32; not above: no sample */
-    uint64_t max_density;         /* Q32.32; clamps voxels; 0: none */
-    uint32_t albedo;              /* Q0.16 */
-    uint32_t step;                /* Q16.16 voxels */
-    uint32_t light_step;          /* Q16.16 voxels */
-    uint32_t min_transmittance;   /* Q0.16: below, the ray ends */
-    uint32_t background[3];       /* Q0.16 red, green, blue */
+    int32_t sun[3]; /* towards the sun, any length > 0 */
+    /* Extinction per unit density per voxel, Q32.32, on view rays and on light
+     * rays. For 1e-4 to 1000 per voxel an RMSE of at most 0.6/255 to double
+     * precision was measured, up to 1 of 0.05 (lab/atlas, extinction_lit).
+     * Nearest lookups go on to any value; trilinear ones are wrong at outlines
+     * beyond 1000, where less density than they can tell from none
+     * (density_max / 65280, 1/256 voxel) is opaque. */
+    uint64_t density_scale;
+    uint64_t light_density_scale;
+    uint64_t min_density; /* Q32.32; not above: no sample */
+    /* Q32.32; clamps voxels; 0: none. Counted in density_max / 65280, rounded
+     * down: less than one of them is BRUME_ERR_SCENE, n of them are up to
+     * 1 / (n + 1) too low. */
+    uint64_t max_density;
+    uint32_t albedo;            /* Q0.16 */
+    uint32_t step;              /* Q16.16 voxels */
+    uint32_t light_step;        /* Q16.16 voxels */
+    uint32_t min_transmittance; /* Q0.16: below, the ray ends */
+    uint32_t background[3];     /* Q0.16 red, green, blue */
 
     uint16_t light_samples; /* 0 .. limit of the kind of light */
     uint8_t filter;         /* enum brume_filter */

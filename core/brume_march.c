@@ -330,6 +330,10 @@ int brume_march_begin(struct brume_frame *frame,
 #endif
     f->kernel = (uint8_t)KERNEL_ID(v->format, apron, tri, uni, clamp);
     f->max_density = clamp ? codes_of(limit, v, false) : BRUME_RANGE_TOP;
+#if BRUME_WITH_MAX_DENSITY
+    if (f->max_density == 0) /* nothing would be left of the volume */
+        return BRUME_ERR_SCENE;
+#endif
     f->min_density =
         v->density_max.m == 0
             ? 0

@@ -72,7 +72,7 @@ measure()
     "$BUILD/brume" render "$out/$1.brume" --scene "$out/scene" \
         -o "$out/core.pfm" || return 1
     "$BUILD/brume" compare "$out/reference.pfm" "$out/core.pfm" \
-        >"$out/metrics"
+        --metrics rmse,mean,max >"$out/metrics"
 }
 
 within()

@@ -83,7 +83,8 @@ metrics()
         --scene "$out/$volume.scene" "$@" -o "$out/reference.pfm" || return 1
     "$BUILD/brume" render "$out/$volume.brume" \
         --scene "$out/$volume.scene" "$@" -o "$picture" || return 1
-    "$BUILD/brume" compare "$out/reference.pfm" "$picture" >"$out/metrics.new"
+    "$BUILD/brume" compare "$out/reference.pfm" "$picture" \
+        --metrics rmse,mean >"$out/metrics.new"
     mv "$out/metrics.new" "$out/metrics"
 }
 

@@ -255,7 +255,8 @@ test_films()
 
 at_most_0()
 {
-    "$brume" compare "$work/$1" "$work/$2" --max-rmse 0 >/dev/null
+    "$brume" compare "$work/$1" "$work/$2" --metrics rmse --max-rmse 0 \
+        >/dev/null
 }
 
 # The film's temporary file is removed by a signal.
