@@ -238,10 +238,6 @@ void brume_lit_march(const struct brume_frame *frame,
 #if BRUME_WITH_DEPTH
     uint32_t where = 0;
 #endif
-#if BRUME_WITH_LAMPS
-    if (f->lit.clusters != NULL)
-        begin_lamps(f, &g, ray);
-#endif
     BRUME_TALLY(rays_in_pool, 1);
     for (;;) {
         m = 1;
