@@ -145,7 +145,7 @@ extern "C" {
 #ifndef BRUME_WITH_FOG /* fog by height, spheres and boxes of it */
 #define BRUME_WITH_FOG BRUME_WITH_LIGHTING
 #endif
-#ifndef BRUME_WITH_LAMPS /* point and spot lights */
+#ifndef BRUME_WITH_LAMPS /* point and spot lights; 5.5 KiB */
 #define BRUME_WITH_LAMPS BRUME_WITH_LIGHTING
 #endif
 #ifndef BRUME_WITH_SURFACE /* rays end at a depth buffer; the sun's map */
@@ -640,7 +640,7 @@ struct brume_lit_lamp {
 
 /* Which lamps reach which part of the view: a word of bits for each of
  * BRUME_CLUSTER_SIDE^2 tiles of the frame's grid of rays and
- * BRUME_CLUSTER_SLICES slices of depth. The caller's memory, 24 KB with the
+ * BRUME_CLUSTER_SLICES slices of depth. The caller's memory, 22 KiB with the
  * limits below; brume_begin_frame fills it for one frame, so it stays as it is
  * until that frame's last ray. There is a bit for every lamp, so a cluster
  * cannot overflow. */

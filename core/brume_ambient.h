@@ -17,8 +17,6 @@ struct gathered {
 #endif
 #if BRUME_WITH_LAMPS
     uint32_t lamp[3]; /* C_c, Q3.29, colours applied */
-    /* Where the ray is among the clusters, and its jitter, Q0.16. */
-    uint32_t lamp_tile[2], lamp_axis, lamp_slice, lamp_jitter;
 #endif
     uint32_t moved[3]; /* Q16.16, 0 .. 1: of stochastic lookups */
     uint32_t lit;      /* samples */

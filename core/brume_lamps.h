@@ -302,55 +302,60 @@ BRUME_APART void add_coloured_lamps(struct lamp_sample *s,
 #define add_coloured_lamps add_grey_lamps
 #endif
 
-/* Where a ray is among the clusters. */
-static inline void begin_lamps(const struct brume_frame *f, struct gathered *g,
-                               const struct brume_ray *ray)
-{
-    uint32_t most = 0;
-    g->lamp_tile[0] = ray->x * f->lit.tile[0] >> 16;
-    g->lamp_tile[1] = ray->y * f->lit.tile[1] >> 16;
-    for (uint32_t i = 0; i < 3; i++)
-        if (magnitude(ray->unit[i]) > most) {
-            most = magnitude(ray->unit[i]);
-            g->lamp_axis = i;
-        }
-    g->lamp_jitter = 0x8000u;
-    if (BRUME_WITH_NOISE && f->lit.lamp_shadows &&
-        (f->jitter & BRUME_JITTER_LIGHT) && f->noise != BRUME_NOISE_NONE)
-        g->lamp_jitter = brume_noise_value(f->noise, &f->noise_table, ray->x,
-                                           ray->y, brume_noise_frame(f), 1);
-}
-
-/* The lamps' light at a sample, which scatters `lost` of it, Q1.31. Samples
- * come from near to far. */
-static inline void add_lamps(const struct brume_frame *f, struct gathered *g,
-                             const struct brume_ray *ray, const uint32_t p[3],
-                             uint32_t lost, const struct kernel *k)
+/* Words of the lamps that may reach a sample. Nothing is kept from one sample
+ * to the next: rays of scenes without lamps are not to pay for it. */
+static inline const uint32_t *lamps_near(const struct brume_frame *f,
+                                         const struct brume_ray *ray,
+                                         const uint32_t p[3])
 {
     const struct brume_clusters *c = f->lit.clusters;
-    uint32_t axis = g->lamp_axis;
-    uint32_t along = p[axis] - (uint32_t)f->eye[axis];
-    if (ray->unit[axis] < 0)
-        along = 0u - along;
-    while (g->lamp_slice < BRUME_CLUSTER_SLICES - 1u &&
-           along >= c->end[g->lamp_slice])
-        g->lamp_slice++;
-    struct lamp_sample s = {f, ray->unit, p, k, g->lamp_jitter, {0}, {0}};
+    uint32_t slice = 0, most = 0, depth = 0;
+    for (int i = 0; i < 3; i++) {
+        /* away from the eye, so below 2^32, along the ray's main axis */
+        uint32_t way = p[i] - (uint32_t)f->eye[i];
+        if (magnitude(ray->unit[i]) <= most)
+            continue;
+        most = magnitude(ray->unit[i]);
+        depth = ray->unit[i] < 0 ? 0u - way : way;
+    }
+    while (slice < BRUME_CLUSTER_SLICES - 1u && depth >= c->end[slice])
+        slice++;
+    return c->lamps[slice][ray->y * f->lit.tile[1] >> 16]
+                   [ray->x * f->lit.tile[0] >> 16];
+}
+
+/* J of the lamps' shadows, Q0.16: the light ray's, or 1/2. */
+static inline uint32_t lamp_jitter(const struct brume_frame *f,
+                                   const struct brume_ray *ray)
+{
+    if (BRUME_WITH_NOISE && f->lit.lamp_shadows &&
+        (f->jitter & BRUME_JITTER_LIGHT) && f->noise != BRUME_NOISE_NONE)
+        return brume_noise_value(f->noise, &f->noise_table, ray->x, ray->y,
+                                 brume_noise_frame(f), 1);
+    return 0x8000u;
+}
+
+/* The lamps' light at a sample, which scatters `lost` of it, Q1.31. */
+BRUME_APART void add_lamps(const struct brume_frame *f, struct gathered *g,
+                           const struct brume_ray *ray, const uint32_t p[3],
+                           uint32_t lost, const struct kernel *k)
+{
+    const struct brume_lit_lamp *lamps = f->lit.clusters->lamp;
+    const uint32_t *words = lamps_near(f, ray, p);
+    struct lamp_sample s = {f, ray->unit, p, k, lamp_jitter(f, ray), {0}, {0}};
     for (int i = 0; i < 3; i++)
         s.at[i] = brume_halved(p[i]);
-    const uint32_t *words =
-        c->lamps[g->lamp_slice][g->lamp_tile[1]][g->lamp_tile[0]];
     for (uint32_t n = 0; n < BRUME_LAMP_WORDS; n++) {
         if (brume_has_colour(f))
-            add_coloured_lamps(&s, c->lamp + 32u * n, words[n]);
+            add_coloured_lamps(&s, lamps + 32u * n, words[n]);
         else
-            add_grey_lamps(&s, c->lamp + 32u * n, words[n]);
+            add_grey_lamps(&s, lamps + 32u * n, words[n]);
     }
     for (int i = 0; i < 3; i++) {
         /* Q31 * Q20 -> Q29 */
         uint32_t high = mul_hi_floor(lost, s.sum[i]), low = lost * s.sum[i];
         uint32_t a = high >> 22 ? 0xffffffffu : high << 10 | low >> 22;
-        g->lamp[i] = g->lamp[i] + a < a ? 0xffffffffu : g->lamp[i] + a;
+        g->lamp[i] = lamp_sum(g->lamp[i], a);
     }
 }
 

@@ -369,10 +369,6 @@ void brume_lit_march(const struct brume_frame *frame,
     static const struct gathered k_none;
     struct walk w = {.g = k_none, .transmittance = 1u << 31, .inside = true};
     const struct kernel k = kernel_of(&w.g);
-#if BRUME_WITH_LAMPS
-    if (f->lit.clusters != NULL)
-        begin_lamps(f, &w.g, ray);
-#endif
     BRUME_TALLY(rays_in_pool, 1);
     for (int i = 0; i < 3; i++)
         w.p[i] = ray->position[i];
