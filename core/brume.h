@@ -142,13 +142,13 @@ extern "C" {
 #ifndef BRUME_WITH_TONE /* output = filmic; 1.1 KiB */
 #define BRUME_WITH_TONE BRUME_WITH_LIGHTING
 #endif
-#ifndef BRUME_WITH_FOG /* fog by height, spheres and boxes of it */
+#ifndef BRUME_WITH_FOG /* fog by height, spheres and boxes of it; 7.0 KiB */
 #define BRUME_WITH_FOG BRUME_WITH_LIGHTING
 #endif
 #ifndef BRUME_WITH_LAMPS /* point and spot lights; 5.5 KiB */
 #define BRUME_WITH_LAMPS BRUME_WITH_LIGHTING
 #endif
-#ifndef BRUME_WITH_SURFACE /* rays end at a depth buffer; the sun's map */
+#ifndef BRUME_WITH_SURFACE /* depth buffers, the sun's map; 2.0 KiB */
 #define BRUME_WITH_SURFACE BRUME_WITH_LIGHTING
 #endif
 #ifndef BRUME_WITH_EMISSION /* fire: the asset's second grid */
@@ -585,7 +585,7 @@ struct brume_fog_shape {
     uint32_t half[3];  /* Q16.16: half the sides of a box along the pool's
                         * axes; a sphere's radius is the first. 1 .. 16384 */
     uint32_t softness; /* Q0.16: the share of that within which density falls
-                        * to 0; 0: a hard edge */
+                        * to 0, with the square of the way; 0: a hard edge */
     uint32_t density;  /* Q0.32, extinction per voxel */
 };
 struct brume_fog {
@@ -1082,9 +1082,11 @@ int brume_render_rect(const struct brume_frame *frame, unsigned x, unsigned y,
                       unsigned w, unsigned h, int pixel_format, void *dst,
                       size_t stride);
 
+#if BRUME_WITH_LIGHTING
 /* The code of a distance, Q16.16, rounded down: brume_radiance.depth,
  * brume_surface.depth. */
 uint32_t brume_depth_of(uint32_t distance);
+#endif
 
 /* What a ray brings back, before the background. */
 struct brume_radiance {

@@ -124,8 +124,9 @@ static inline void add_sky(const struct brume_frame *f, struct gathered *g,
         sky_direction(f, ray->x, ray->y, g->lit, local);
         through = sky_transmittance(f, p, local, way, k, inside);
     } else if (f->lit.visibility == BRUME_SKY_BAKED) {
-        uint32_t nearest[3];
-        hold_in_pool(f, p, nearest);
+        uint32_t nearest[3] = {p[0], p[1], p[2]};
+        if (!inside)
+            hold_in_pool(f, p, nearest);
         through = baked_sky(f, nearest);
     }
     uint32_t seen = mul_hi_floor(lost, through); /* Q3.29 */

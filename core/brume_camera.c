@@ -574,9 +574,10 @@ static uint32_t time_of_edge(const struct brume_frame *f, const int32_t unit[3])
  * are any (`meets`), are known already. False when nothing is left. */
 static bool begin_in_fog(struct brume_ray *ray, const struct brume_frame *f,
                          const int32_t unit[3], uint32_t x, uint32_t y,
-                         uint32_t jitter, bool meets)
+                         bool meets)
 {
-    uint32_t end = f->lit.lighting->fog->far, t = first_t(f, jitter);
+    uint32_t end = f->lit.lighting->fog->far;
+    uint32_t t = first_t(f, view_jitter(f, x, y));
     uint32_t edge = time_of_edge(f, unit);
     end = edge < end ? edge : end;
 #if BRUME_WITH_SURFACE
@@ -603,13 +604,12 @@ static bool begin_in_fog(struct brume_ray *ray, const struct brume_frame *f,
 /* The end of what the lattice in the pool leaves; false when there is no
  * sample. */
 static bool end_ray(struct brume_ray *ray, const struct brume_frame *f,
-                    const int32_t unit[3], uint32_t x, uint32_t y,
-                    uint32_t jitter, bool meets)
+                    const int32_t unit[3], uint32_t x, uint32_t y, bool meets)
 {
-    (void)ray, (void)f, (void)unit, (void)x, (void)y, (void)jitter;
+    (void)ray, (void)f, (void)unit, (void)x, (void)y;
 #if BRUME_WITH_FOG
     if (brume_has_fog(f))
-        return begin_in_fog(ray, f, unit, x, y, jitter, meets);
+        return begin_in_fog(ray, f, unit, x, y, meets);
 #endif
 #if BRUME_WITH_SURFACE
     if (meets && brume_has_surface(f))
@@ -631,16 +631,15 @@ bool brume_ray_begin(struct brume_ray *ray, const struct brume_frame *frame,
         move_in_pixel(unit, f, x, y);
 #endif
     brume_normalise(unit);
-    bool meets = clip(f, unit, &t_in, &t_out);
+    bool meets = clip(f, unit, &t_in, &t_out) &&
+                 enter(ray, f, unit, view_jitter(f, x, y), t_in, t_out);
     if (!meets && !brume_has_fog(f))
         return false;
-    uint32_t jitter = view_jitter(f, x, y);
-    meets = meets && enter(ray, f, unit, jitter, t_in, t_out);
     for (int i = 0; meets && i < 3; i++)
         ray->line.inverse[i] = brume_inverse_of_move(ray->line.move[i]);
     if (meets)
         ray->count = count_inside(ray, f);
-    if (!end_ray(ray, f, unit, x, y, jitter, meets))
+    if (!end_ray(ray, f, unit, x, y, meets))
         return false;
     if (!f->skip)
         for (int i = 0; i < 3; i++)

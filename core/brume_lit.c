@@ -202,11 +202,23 @@ struct walk {
     uint32_t index;         /* and its number, from the ray's first */
     uint32_t transmittance; /* Q1.31 */
     uint32_t reach;         /* of the light ray */
-    bool inside;            /* of the pool? */
+#if BRUME_WITH_FOG
+    bool outside; /* of the pool? */
+#endif
 #if BRUME_WITH_DEPTH
     uint32_t where; /* sum of moments */
 #endif
 };
+
+BRUME_INLINE bool is_inside(const struct walk *w)
+{
+#if BRUME_WITH_FOG
+    return !w->outside;
+#else
+    (void)w;
+    return true;
+#endif
+}
 
 /* What is at a sample. */
 struct matter {
@@ -228,7 +240,7 @@ static uint32_t find_matter(const struct brume_frame *f,
     uint32_t m = 1;
     at->d = at->opacity = 0;
     at->any = false;
-    if (w->inside && !find_density(f, p[0], p[1], p[2], &at->d, *k)) {
+    if (is_inside(w) && !find_density(f, p[0], p[1], p[2], &at->d, *k)) {
         m = leap(f, &ray->line, p[0], p[1], p[2], at->d, *k);
         at->d = 0;
     } else if (at->d > f->min_density) {
@@ -264,8 +276,8 @@ static void add_sun(const struct brume_frame *f, const struct brume_ray *ray,
 #if BRUME_WITH_FOG
     if (brume_has_fog(f)) {
         uint32_t depth = fog_depth(f, &ray->light, w->p, &at->fog);
-        sum = w->inside ? sun_sum(f, &ray->light, w->p, at->d, &w->reach, k)
-                        : sun_sum_outside(f, &ray->light, w->p, k);
+        sum = is_inside(w) ? sun_sum(f, &ray->light, w->p, at->d, &w->reach, k)
+                           : sun_sum_outside(f, &ray->light, w->p, k);
         for (uint32_t i = 0; i < f->lit.octaves; i++) {
             uint32_t a = f->lit.fog.extinction[i];
             uint32_t more = a == 0xffffffffu ? depth : mul_hi_floor(depth, a);
@@ -291,7 +303,7 @@ static void add_light(const struct brume_frame *f, const struct brume_ray *ray,
     add_sun(f, ray, w, at, lost, k);
 #if BRUME_WITH_AMBIENT
     if (f->lit.ambient != BRUME_AMBIENT_NONE)
-        add_sky(f, &w->g, ray, w->p, lost, k, w->inside);
+        add_sky(f, &w->g, ray, w->p, lost, k, is_inside(w));
 #endif
 #if BRUME_WITH_LAMPS
     if (f->lit.clusters != NULL)
@@ -344,17 +356,15 @@ static void march_in_fog(const struct brume_frame *f,
     uint32_t behind = ray->before + ray->count, n;
     for (uint32_t at = 0; at < ray->samples; at += n) {
         w->index = at;
-        w->inside = at >= ray->before && at < behind;
-        n = (w->inside          ? behind
-             : at < ray->before ? ray->before
-                                : ray->samples) -
-            at;
-        if (w->inside) {
-            for (int i = 0; i < 3; i++)
-                w->p[i] = ray->position[i];
-        } else {
+        w->outside = at < ray->before || at >= behind;
+        if (w->outside) {
+            n = (at < ray->before ? ray->before : ray->samples) - at;
             n = n < MOST_MOVES ? n : MOST_MOVES;
             brume_ray_place(f, ray->unit, ray->t + at * f->step, w->p);
+        } else {
+            n = behind - at;
+            for (int i = 0; i < 3; i++)
+                w->p[i] = ray->position[i];
         }
         if (!march_part(f, ray, w, n, k))
             return;
@@ -367,7 +377,7 @@ void brume_lit_march(const struct brume_frame *frame,
 {
     const struct brume_frame *f = frame;
     static const struct gathered k_none;
-    struct walk w = {.g = k_none, .transmittance = 1u << 31, .inside = true};
+    struct walk w = {.g = k_none, .transmittance = 1u << 31};
     const struct kernel k = kernel_of(&w.g);
     BRUME_TALLY(rays_in_pool, 1);
     for (int i = 0; i < 3; i++)

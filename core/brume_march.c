@@ -10,10 +10,12 @@
 
 /// View ///
 
+#if BRUME_WITH_LIGHTING
 uint32_t brume_depth_of(uint32_t distance)
 {
     return brume_depth_code(distance);
 }
+#endif
 
 #if BRUME_WITH_DEPTH
 uint32_t brume_mean_depth(const struct brume_frame *frame, uint32_t t,

@@ -292,6 +292,85 @@ curves()
         ambient_colour=0.2,0.3,0.5
 }
 
+# Things of a volume whose middle is at X Y Z of the world and which is L wide:
+# shapes of fog, one of them around the eye; bars between it and the sun and a
+# ground below, as the camera and the sun see them.
+things_of()
+{
+    eye=$(sed -n 's/^eye = //p' "$out/$volume_name.scene")
+    awk -v x="$1" -v y="$2" -v z="$3" -v l="$4" -v d="$5" -v eye="$eye" 'BEGIN {
+        printf "sphere %g,%g,%g %g %g 0.5\n", x + .4 * l, y, z + .3 * l,
+            .3 * l, 4 * d
+        printf "box %g,%g,%g %g,%g,%g %g 0.2\n", x - .4 * l, y, z, .2 * l,
+            .3 * l, .25 * l, 2 * d
+        printf "sphere %s %g %g 1\n", eye, .2 * l, 2 * d }' \
+        >"$out/$volume_name.shapes"
+    awk -v x="$1" -v y="$2" -v z="$3" -v l="$4" 'BEGIN {
+        for (i = -3; i < 3; i++) {
+            for (n = 0; n < 4; n++)
+                printf "v %g %g %g\n", x + l * (i + (n % 3 ? .5 : 0)) / 4,
+                    y + .7 * l, z + l * (n > 1 ? 1 : -1)
+            print "f -4 -3 -2 -1" } }' >"$out/$volume_name.obj"
+    area=$(awk -v x="$1" -v z="$3" -v l="$4" 'BEGIN {
+        printf "%g,%g,%g,%g", x - 2 * l, z - 2 * l, x + 2 * l, z + 2 * l }')
+    plane=$(awk -v y="$2" -v l="$4" 'BEGIN { print y - .4 * l }')
+    "$BUILD/brume" surface "$out/$volume_name.brume" \
+        --scene "$out/$volume_name.scene" --set size=160x90 \
+        --mesh "$out/$volume_name.obj" --area "$area" --plane "$plane" \
+        --depth "$out/$volume_name.depth.pgm" \
+        --sun-map "$out/$volume_name.sun.pgm" --size 256x256 >/dev/null
+}
+
+# fog MIDDLE... L DENSITY: density is per voxel. 160x90, as every sample of the
+# air counts.
+fog()
+{
+    things_of "$@"
+    small="size=160x90 fog_density=$5 fog_base=$2 fog_far=$(
+        awk -v l="$4" 'BEGIN { print 6 * l }')"
+    falloff="fog_falloff=$(awk -v l="$4" 'BEGIN { print l / 2 }')"
+    steep="fog_falloff=$(awk -v l="$4" 'BEGIN { print l / 20 }')"
+    shapes="fog_shapes=$out/$volume_name.shapes"
+    surface="surface=$out/$volume_name.depth.pgm"
+    map="sun_map=$out/$volume_name.sun.pgm"
+    # shellcheck disable=SC2086
+    {
+        light "fog without end" $small
+        light "fog by height" $small $falloff
+        light "a layer of fog" $small $steep
+        light "fog to the top" $small $falloff fog_base=1000
+        light "fog, nearest" $small $falloff filter=nearest
+        light "fog, steps of 0.4" $small $falloff step=0.4
+        light "fog, uniform light" $small $falloff light=uniform \
+            light_samples=40 light_step=2
+        light "fog, no light" $small $falloff light=none
+        light "fog, cones" $small $falloff light=cone light_samples=10
+        nearly 5 2 "fog, cache" $small $falloff light=cache light_samples=8
+        light "fog, octaves of droplets" $small $falloff octaves=4 \
+            phase=droplet:10
+        light "fog before the sun" $small $falloff "sun=$6" phase=hg:0.8 \
+            exposure=0.25
+        light "fog, sun below the horizon" $small $falloff "sun=100 -20"
+        light "fog, gradient" $small $falloff ambient=gradient \
+            ambient_top=0.2,0.4,0.8 ambient_bottom=0.3,0.2,0.1
+        light "fog, sky, haze" $small $falloff $blue haze=300
+        light "opaque fog" $small fog_density=0.9
+        light "fog, albedo 0" $small $falloff albedo=0 background=1
+        light "shapes" $small fog_density=0 $shapes
+        light "shapes in fog" $small $falloff $shapes octaves=2
+        light "shapes, uniform light" $small $falloff $shapes light=uniform \
+            light_samples=40 light_step=2
+        light "shapes, cones" $small $falloff $shapes light=cone \
+            light_samples=10
+        light "surface" size=160x90 $surface
+        light "surface in fog" $small $falloff $surface
+        light "sun map" size=160x90 $map
+        light "sun map, nearest" size=160x90 $map filter=nearest
+        light "fog, shapes, surface, sun map" $small $falloff $shapes \
+            $surface $map octaves=3 phase=hg:0.3
+    }
+}
+
 all_of()
 {
     volume_name=$1 sun_behind=$2
@@ -311,11 +390,13 @@ all_of()
 bake cumulus "$out/cumulus.vdb" --format u8r --mips --sun-cache 2 \
     --sun -75,32 --sky-visibility --sky-extinction 0.15
 all_of cumulus "$cumulus_behind" "100,200,130" "-150 -2" 32,20,32 1
+fog 32 20 32 55 0.004 "$cumulus_behind"
 
 if [ -f "$DATA/wdas_cloud_sixteenth.vdb" ]; then
     bake wdas "$DATA/wdas_cloud_sixteenth.vdb" --format u8 --mips \
         --sun-cache 2 --sun -60,30 --sky-visibility --sky-extinction 0.07
     all_of wdas "$wdas_behind" "600,1200,960" "-150 -20" -10,75,-41 7
+    fog -10 75 -41 400 0.0015 "$wdas_behind"
 else
     echo "# REAL VOLUMES ARE NOT IN $DATA" >&2
     skip "light on the Disney cloud: wdas_cloud_sixteenth.vdb absent"
@@ -325,6 +406,7 @@ if [ -f "$DATA/openvdb_smoke1.vdb" ]; then
     bake smoke "$DATA/openvdb_smoke1.vdb" --format u8r --max-density 1 \
         --mips --sun-cache 2 --sun 40,20 --sky-visibility --sky-extinction 0.3
     all_of smoke "$smoke_behind" "1,200,181" "-173 -5" -24,33,-13 1.2
+    fog -8 40 0 100 0.0012 "$smoke_behind"
 else
     skip "light on the smoke: openvdb_smoke1.vdb absent"
 fi
