@@ -54,7 +54,7 @@ REFERENCES = reference spec-dump monte-carlo octave-fit
 TEST_PROGRAMS = $(TESTS) $(REFERENCES:%=$(BUILD)/brume-%) \
 	$(BUILD)/tests/hash_scenes $(BUILD)/tests/section_dump \
 	$(BUILD)/tests/make_vdbs $(BUILD)/tests/noise_march \
-	$(BUILD)/brume-stability $(BUILD)/brume-lab
+	$(BUILD)/brume-stability $(BUILD)/brume-lab $(BUILD)/brume-atlas
 
 .PHONY: all demo test golden targets targets-update targets-deps deps \
 	test-deps install clean help
@@ -68,6 +68,7 @@ demo: deps ## make a cloud (or take VDB=file), bake it, draw pictures of it
 	@BUILD=$(BUILD) VDB="$(VDB)" sh platform/host/demo.sh
 include bench/bench.mk
 include lab/lab.mk
+include lab/atlas/atlas.mk
 endif
 
 test: test-deps ## build and run every test of this machine

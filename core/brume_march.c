@@ -303,13 +303,18 @@ int brume_march_begin(struct brume_frame *frame,
     const struct brume_volume *v = f->volume;
     bool apron = v->side == 9, tri = scene->filter == BRUME_TRILINEAR;
     bool uni = scene->light == BRUME_UNIFORM;
-    struct brume_number limit = brume_number_q32(scene->max_density);
     /* A volume without density has no unit to clamp in. */
-    bool clamp = limit.m != 0 && v->density_max.m != 0 &&
-                 codes_of(limit, v, false) < BRUME_RANGE_TOP;
+    uint32_t limit = BRUME_RANGE_TOP;
+    if (scene->max_density != 0 && v->density_max.m != 0)
+        limit = codes_of(brume_number_q32(scene->max_density), v, false);
+    bool clamp = limit < BRUME_RANGE_TOP;
     bool narrow = v->format == BRUME_U8 && !tri && !clamp;
     if (!kernel_is_compiled(v->format, apron, tri, uni, clamp))
         return BRUME_ERR_FEATURE;
+#if BRUME_WITH_MAX_DENSITY
+    if (limit == 0) /* nothing would be left of the volume */
+        return BRUME_ERR_SCENE;
+#endif
 #if BRUME_WITH_LIGHTING
     int err = brume_lit_begin(f, scene);
     if (err)
@@ -317,7 +322,7 @@ int brume_march_begin(struct brume_frame *frame,
     uni = uni && !f->lit.on; /* lit frames know their light otherwise */
 #endif
     f->kernel = (uint8_t)KERNEL_ID(v->format, apron, tri, uni, clamp);
-    f->max_density = clamp ? codes_of(limit, v, false) : BRUME_RANGE_TOP;
+    f->max_density = clamp ? limit : BRUME_RANGE_TOP;
     f->min_density =
         v->density_max.m == 0
             ? 0

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "compare.h"
+#include "metrics.h"
 #include "image.h"
 #include "render.h"
 #include "support/volumes.h"
@@ -96,10 +96,10 @@ static void check_picture(const struct image *now, const char *name,
 {
     char path[512], err[300] = "";
     struct image old = {0};
-    struct compare_result r = {0};
+    struct metrics_error r = {0};
     snprintf(path, sizeof path, "%s/%s.png", golden, name);
     bool good = image_read(path, &old, err, sizeof err) == 0 &&
-                image_compare(&old, now, &r, err, sizeof err) == 0;
+                metrics_error(&old, now, &r, err, sizeof err) == 0;
     if (!tap_check(good && r.max == 0, "%s: picture (max %g) %s", name, r.max,
                    err))
         leave_difference(now, &old, name, out);

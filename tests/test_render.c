@@ -340,6 +340,10 @@ static void check_scene_limits(const struct test_volumes *volumes)
     EXPECT(s.albedo = 0x10001, BRUME_ERR_SCENE);
     EXPECT(s.min_transmittance = 0x10001, BRUME_ERR_SCENE);
     EXPECT(s.background[2] = 0x10001, BRUME_ERR_SCENE);
+    /* density_max is 1: one code of 65280, and just below it */
+    EXPECT(s.max_density = 65794, BRUME_OK);
+    EXPECT(s.max_density = 65700, BRUME_ERR_SCENE);
+    EXPECT(s.max_density = 1, BRUME_ERR_SCENE);
     EXPECT(s.filter = 3, BRUME_ERR_SCENE);
     EXPECT(s.jitter = 4, BRUME_ERR_SCENE);
     EXPECT(s.noise = 11, BRUME_ERR_SCENE);

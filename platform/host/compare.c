@@ -1,223 +1,275 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Image metrics and `brume compare`. Sums run tile by tile in a fixed order,
- * so the same files give the same digits on any IEEE host.
+ * `brume compare`: files, and what is printed. A pair of pictures is a
+ * sequence of one frame.
  */
 #include "compare.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define MESSAGE_SIZE 512
+#include "compare_options.h"
+#include "image_codec.h"
+#include "metrics.h"
+#include "out_file.h"
+#include "pattern.h"
 
-struct sums {
-    double square, difference, max;
-    double samples;
+/* What all frames together gave. */
+struct run {
+    const struct compare_options *options;
+    double total[METRICS];
+    struct metrics_sequence sequence;
+    struct image map, flip_map;
+    char *table; /* of --csv */
+    size_t table_size;
+    FILE *table_file;
 };
 
-struct options {
-    const char *path[2];
-    double max_rmse; /* negative: no limit */
-    int help;
-};
+/// Measuring ///
 
-static const char usage[] =
-    "usage: brume compare A B [--max-rmse X]\n"
-    "\n"
-    "Compares two pictures (.png .ppm .pgm .pfm) of the same size and prints\n"
-    "  rmse        root mean square difference\n"
-    "  mean        mean of B - A\n"
-    "  psnr        in dB, inf when identical\n"
-    "  max         largest absolute difference\n"
-    "  worst_tile  largest rmse of an 8x8 tile\n"
-    "one name=value a line, in 1/255 of full scale except psnr.\n"
-    "\n"
-    "  --max-rmse X  exit with status 1 when rmse is above X\n"
-    "  --help        print this\n"
-    "\n"
-    "Exit status: 0, 1 above --max-rmse, 2 on bad usage or files.\n";
-
-/// Metrics ///
-
-/* Channel c of pixel i in 1/255. */
-static double sample_at(const struct image *image, size_t i, int c)
+static int measure_pair(struct run *r, const struct image *a,
+                        const struct image *b, double v[METRICS], char *err)
 {
-    size_t at = i * (size_t)image->channels;
+    const struct compare_options *o = r->options;
+    struct metrics_error e;
+    struct metrics_flip f = {0, 0};
 
-    if (c < image->channels)
-        at += (size_t)c;
-    return image->u8 ? image->u8[at] : 255.0 * (double)image->f32[at];
+    if (metrics_error(a, b, &e, err, MESSAGE_SIZE))
+        return -1;
+    v[RMSE] = e.rmse;
+    v[MEAN] = e.mean;
+    v[PSNR] = e.psnr;
+    v[MAX] = e.max;
+    v[WORST_TILE] = e.worst_tile;
+    if (o->wanted[SSIM] && metrics_ssim(a, b, &v[SSIM], err, MESSAGE_SIZE))
+        return -1;
+    if ((o->wanted[FLIP] || o->wanted[FLIP_MAX] || o->flip) &&
+        metrics_flip(a, b, o->linear, o->degree, &f,
+                     o->flip ? &r->flip_map : NULL, err, MESSAGE_SIZE))
+        return -1;
+    v[FLIP] = f.mean;
+    v[FLIP_MAX] = f.max;
+    if (metrics_sharpness(a, b, &v[SHARPNESS], err, MESSAGE_SIZE))
+        return -1;
+    if (o->heat && metrics_error_map(a, b, &r->map, err, MESSAGE_SIZE))
+        return -1;
+    return o->many ? metrics_add(&r->sequence, a, b, err, MESSAGE_SIZE) : 0;
 }
 
-static int min_int(int a, int b)
+/* Into what is of all frames: sums of squares, sums, or the largest. */
+static void add_frame(struct run *r, const double v[METRICS])
 {
-    return a < b ? a : b;
-}
-
-/* The tile whose top left pixel is (x0, y0). */
-static struct sums tile_sums(const struct image *a, const struct image *b,
-                             int x0, int y0)
-{
-    int x1 = min_int(x0 + COMPARE_TILE, a->width);
-    int y1 = min_int(y0 + COMPARE_TILE, a->height);
-    int channels = a->channels > b->channels ? a->channels : b->channels;
-    struct sums s = {0, 0, 0, 0};
-
-    for (int y = y0; y < y1; y++)
-        for (int x = x0; x < x1; x++)
-            for (int c = 0; c < channels; c++) {
-                size_t i = (size_t)y * (size_t)a->width + (size_t)x;
-                double d = sample_at(b, i, c) - sample_at(a, i, c);
-                s.square += d * d;
-                s.difference += d;
-                s.max = fabs(d) > s.max ? fabs(d) : s.max;
-            }
-    s.samples = (double)(x1 - x0) * (y1 - y0) * channels;
-    return s;
-}
-
-static int size_error(const struct image *a, const struct image *b, char *err,
-                      size_t err_size)
-{
-    snprintf(err, err_size, "sizes differ: %d x %d and %d x %d", a->width,
-             a->height, b->width, b->height);
-    return -1;
-}
-
-int image_compare(const struct image *a, const struct image *b,
-                  struct compare_result *result, char *err, size_t err_size)
-{
-    struct sums all = {0, 0, 0, 0};
-    double worst = 0; /* mean square */
-
-    if (a->width != b->width || a->height != b->height)
-        return size_error(a, b, err, err_size);
-    for (int y = 0; y < a->height; y += COMPARE_TILE)
-        for (int x = 0; x < a->width; x += COMPARE_TILE) {
-            struct sums s = tile_sums(a, b, x, y);
-            all.square += s.square;
-            all.difference += s.difference;
-            all.samples += s.samples;
-            all.max = s.max > all.max ? s.max : all.max;
-            worst = fmax(worst, s.square / s.samples);
+    for (int m = 0; m < FRAME_METRICS; m++)
+        switch (m) {
+        case RMSE: r->total[m] += v[m] * v[m]; break;
+        case MAX:
+        case WORST_TILE:
+        case FLIP_MAX: r->total[m] = fmax(r->total[m], v[m]); break;
+        default: r->total[m] += v[m]; break;
         }
-    result->rmse = sqrt(all.square / all.samples);
-    result->mean = all.difference / all.samples;
-    result->max = all.max;
-    result->worst_tile = sqrt(worst);
-    result->psnr =
-        result->rmse > 0 ? 20 * log10(255 / result->rmse) : (double)INFINITY;
-    return 0;
 }
 
-/// The command ///
-
-#if defined(__GNUC__)
-__attribute__((format(printf, 1, 2)))
-#endif
-static int
-complain(const char *fmt, ...)
+static void end_totals(struct run *r)
 {
-    va_list ap;
+    const struct compare_options *o = r->options;
+    double n = (double)(o->last - o->first) + 1;
+    struct metrics_time t;
 
-    fputs("brume compare: ", stderr);
-    va_start(ap, fmt);
-    vfprintf(stderr, fmt, ap);
-    va_end(ap);
-    fputc('\n', stderr);
-    return -1;
+    r->total[RMSE] = sqrt(r->total[RMSE] / n);
+    r->total[PSNR] = metrics_psnr(r->total[RMSE]);
+    r->total[MEAN] /= n;
+    r->total[SSIM] /= n;
+    r->total[FLIP] /= n;
+    r->total[SHARPNESS] /= n;
+    metrics_finish(&r->sequence, &t);
+    r->total[GHOSTING] = t.ghosting;
+    r->total[FLICKER] = t.flicker;
+    r->total[DEVIATION] = t.deviation;
+    r->total[LAG] = t.lag;
+    r->total[TPSNR] = t.psnr;
 }
 
-static int parse_limit(const char *text, double *limit)
+static void print_value(FILE *to, double v)
 {
-    char *end;
-
-    if (!text)
-        return complain("--max-rmse needs a number");
-    *limit = strtod(text, &end);
-    if (end == text || *end || !isfinite(*limit) || *limit < 0)
-        return complain("--max-rmse %s: must be a number from 0 up", text);
-    return 0;
+    if (isfinite(v))
+        fprintf(to, "%.6f", fabs(v) < 5e-7 ? 0.0 : v); /* no "-0.000000" */
+    else
+        fputs(isnan(v) ? "nan" : v < 0 ? "-inf" : "inf", to);
 }
 
-static int parse_options(int argc, char **argv, struct options *o)
+/* The head, for v = NULL, or a line of --csv. */
+static void add_line(struct run *r, uint32_t frame, const double *v)
 {
-    int paths = 0, literal = 0;
-
-    for (int i = 1; i < argc; i++) {
-        if (!literal && strcmp(argv[i], "--help") == 0) {
-            o->help = 1;
-            return 0;
-        }
-        if (!literal && strcmp(argv[i], "--") == 0) {
-            literal = 1;
-        } else if (!literal && strcmp(argv[i], "--max-rmse") == 0) {
-            i++;
-            if (parse_limit(i < argc ? argv[i] : NULL, &o->max_rmse))
-                return -1;
-        } else if (!literal && argv[i][0] == '-') {
-            return complain("unknown option %s; see --help", argv[i]);
-        } else if (paths == 2) {
-            return complain("more than two pictures: %s", argv[i]);
-        } else {
-            o->path[paths++] = argv[i];
-        }
+    if (!r->table_file)
+        return;
+    if (v)
+        fprintf(r->table_file, "%lu", (unsigned long)frame);
+    else
+        fputs("frame", r->table_file);
+    for (int m = 0; m < FRAME_METRICS; m++) {
+        if (!r->options->wanted[m])
+            continue;
+        fputc(',', r->table_file);
+        if (v)
+            print_value(r->table_file, v[m]);
+        else
+            fputs(compare_names[m], r->table_file);
     }
-    if (paths < 2)
-        return complain("needs two pictures; see --help");
-    return 0;
+    fputc('\n', r->table_file);
 }
 
-static int compare_files(const char *const path[2],
-                         struct compare_result *result)
+static int measure_frame(struct run *r, uint32_t frame)
 {
-    struct image a, b = {0, 0, 0, NULL, NULL};
-    char err[MESSAGE_SIZE];
-    int status = image_read(path[0], &a, err, sizeof err);
+    const struct compare_options *o = r->options;
+    struct image image[2] = {{0, 0, 0, NULL, NULL}, {0, 0, 0, NULL, NULL}};
+    const char *path[2] = {o->path[0], o->path[1]};
+    char name[2][PATTERN_SIZE], err[MESSAGE_SIZE];
+    double v[METRICS] = {0};
+    int status = 0;
 
-    if (status == 0)
-        status = image_read(path[1], &b, err, sizeof err);
+    for (int i = 0; i < 2 && status == 0; i++) {
+        if (o->many && pattern_is(path[i])) {
+            pattern_name(path[i], frame, name[i]);
+            path[i] = name[i];
+        }
+        status = image_read(path[i], &image[i], err, sizeof err);
+    }
     if (status)
-        complain("%s", err);
-    else if ((status = image_compare(&a, &b, result, err, sizeof err)) != 0)
-        complain("%s and %s: %s", path[0], path[1], err);
-    image_free(&a);
-    image_free(&b);
+        compare_complain("%s", err);
+    else if ((status = measure_pair(r, &image[0], &image[1], v, err)) != 0)
+        compare_complain("%s and %s: %s", path[0], path[1], err);
+    if (status == 0) {
+        add_frame(r, v);
+        add_line(r, frame, v);
+    }
+    image_free(&image[0]);
+    image_free(&image[1]);
     return status;
 }
 
-static int print_result(const struct compare_result *r)
+/// Output ///
+
+static int write_heat(const char *path, const struct image *map, double white)
 {
-    /* No "-0.000000". */
-    printf("rmse=%.6f\nmean=%.6f\n", r->rmse,
-           fabs(r->mean) < 5e-7 ? 0.0 : r->mean);
-    if (isinf(r->psnr))
-        printf("psnr=inf\n");
-    else
-        printf("psnr=%.6f\n", r->psnr);
-    printf("max=%.6f\nworst_tile=%.6f\n", r->max, r->worst_tile);
-    if (fflush(stdout) != 0 || ferror(stdout))
-        return complain("cannot write the result");
+    struct image picture;
+    char err[MESSAGE_SIZE];
+    int status = metrics_heat(map, white, &picture, err, sizeof err);
+
+    if (status)
+        return compare_complain("%s: %s", path, err);
+    status = image_write(path, &picture, err, sizeof err);
+    image_free(&picture);
+    return status ? compare_complain("%s", err) : 0;
+}
+
+static double largest_of(const struct image *map)
+{
+    double most = 0;
+
+    for (size_t i = 0; i < image_samples(map); i++)
+        most = fmax(most, (double)map->f32[i]);
+    return most;
+}
+
+static int write_table(const struct run *r)
+{
+    struct out_file out;
+    const char *path = r->options->csv;
+    char err[MESSAGE_SIZE];
+
+    if (out_open(&out, path, err, sizeof err))
+        return compare_complain("%s: %s", path, err);
+    if (out_write(&out, r->table, r->table_size, err, sizeof err)) {
+        out_abandon(&out);
+        return compare_complain("%s: %s", path, err);
+    }
+    if (out_close(&out, err, sizeof err))
+        return compare_complain("%s: %s", path, err);
     return 0;
+}
+
+static int print_totals(const struct run *r)
+{
+    for (int m = 0; m < (r->options->many ? METRICS : FRAME_METRICS); m++) {
+        if (!r->options->wanted[m])
+            continue;
+        printf("%s=", compare_names[m]);
+        print_value(stdout, r->total[m]);
+        putchar('\n');
+    }
+    if (fflush(stdout) != 0 || ferror(stdout))
+        return compare_complain("cannot write the result");
+    return 0;
+}
+
+/* Files first, each whole or not at all: what is printed is of a run that went
+ * well. */
+static int write_all(struct run *r)
+{
+    const struct compare_options *o = r->options;
+
+    if (o->heat) {
+        double most = o->heat_max > 0 ? o->heat_max / 255 : largest_of(&r->map);
+        if (write_heat(o->heat, &r->map, most > 0 ? most : 1))
+            return -1;
+    }
+    if (o->flip && write_heat(o->flip, &r->flip_map, 1))
+        return -1;
+    if (o->csv && write_table(r))
+        return -1;
+    return print_totals(r);
+}
+
+static int measure_all(struct run *r)
+{
+    const struct compare_options *o = r->options;
+
+    if (o->csv) {
+        r->table_file = open_memstream(&r->table, &r->table_size);
+        if (!r->table_file)
+            return compare_complain("no memory for the table");
+    }
+    add_line(r, 0, NULL);
+    for (uint32_t frame = o->first;; frame++) {
+        if (measure_frame(r, frame))
+            return -1;
+        if (frame == o->last)
+            break;
+    }
+    end_totals(r);
+    if (r->table_file && fflush(r->table_file) != 0)
+        return compare_complain("no memory for the table");
+    return 0;
+}
+
+static void free_run(struct run *r)
+{
+    if (r->table_file)
+        fclose(r->table_file);
+    free(r->table);
+    image_free(&r->map);
+    image_free(&r->flip_map);
+    metrics_free(&r->sequence);
 }
 
 int compare_main(int argc, char **argv)
 {
-    struct options o = {{NULL, NULL}, -1, 0};
-    struct compare_result result;
+    struct compare_options o;
+    struct run r = {.options = &o};
+    int status;
 
-    if (parse_options(argc, argv, &o))
+    if (compare_parse(argc, argv, &o))
         return 2;
     if (o.help)
-        return fputs(usage, stdout) < 0 || fflush(stdout) != 0 ? 2 : 0;
-    if (compare_files(o.path, &result) || print_result(&result))
-        return 2;
-    if (o.max_rmse >= 0 && result.rmse > o.max_rmse) {
-        complain("rmse %.6f is above --max-rmse %g", result.rmse, o.max_rmse);
+        return fputs(compare_usage, stdout) < 0 || fflush(stdout) != 0 ? 2 : 0;
+    status = measure_all(&r) || write_all(&r) ? 2 : 0;
+    free_run(&r);
+    if (status == 0 && o.max_rmse >= 0 && r.total[RMSE] > o.max_rmse) {
+        compare_complain("rmse %.6f is above --max-rmse %g", r.total[RMSE],
+                         o.max_rmse);
         return 1;
     }
-    return 0;
+    return status;
 }

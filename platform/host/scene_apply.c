@@ -248,6 +248,26 @@ static int refuse_light(const struct scene_settings *s, char *err,
     return 0;
 }
 
+/* What the core counts as no density at all, with the name of the key. A clamp
+ * that Q32.32 rounds to 0 would even be none. */
+static int check_clamp(const struct scene_settings *s,
+                       const struct volume_file *file,
+                       const struct brume_scene *scene, char *err,
+                       size_t err_size)
+{
+    const struct brume_number most = file->volume.density_max;
+    double limit = s->value[SCENE_MAX_DENSITY][0];
+    double code = ldexp(most.m, most.e) / BRUME_RANGE_TOP;
+    if (!s->set[SCENE_MAX_DENSITY] || limit == 0 ||
+        (limit >= code && scene->max_density != 0))
+        return 0;
+    snprintf(err, err_size,
+             "%s: max_density is %g, and must be 0 or at least 1/65280 of "
+             "the volume's largest density, %g",
+             s->where[SCENE_MAX_DENSITY], limit, code);
+    return -1;
+}
+
 int scene_apply(const struct scene_settings *settings,
                 const struct volume_file *file, struct brume_scene *scene,
                 struct scene_light *light, char *err, size_t err_size)
@@ -262,7 +282,8 @@ int scene_apply(const struct scene_settings *settings,
     if (apply_point(s, SCENE_EYE, file, scene->eye, err, err_size) != 0 ||
         apply_point(s, SCENE_TARGET, file, scene->target, err, err_size) != 0 ||
         apply_up(s, file, scene, err, err_size) != 0 ||
-        apply_sun(s, file, scene) != 0)
+        apply_sun(s, file, scene) != 0 ||
+        check_clamp(s, file, scene, err, err_size) != 0)
         return -1;
     if (doubles(scene) && scene->light_samples > BRUME_MAX_LOG_SAMPLES) {
         snprintf(err, err_size, "%s: light_samples is %d, %s takes up to %d",

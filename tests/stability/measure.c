@@ -1,95 +1,70 @@
 /* SPDX-License-Identifier: MIT */
+/* The host's metrics (metrics.h) of pictures of the stage. */
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 
+#include "metrics.h"
 #include "stability.h"
 
-#define W STABILITY_WIDTH
-#define H STABILITY_HEIGHT
-
-/* Difference of two codes in 1/255. */
-static double difference(uint16_t a, uint16_t b)
+/* Sizes are the same and memory is there: else it is no use to go on. */
+static void must(int bad, const char *err)
 {
-    return ((double)a - b) / 257;
-}
-
-static double worst_tile(const picture_t a, const picture_t b)
-{
-    double worst = 0;
-    for (int tile = 0; tile < (W + 7) / 8 * ((H + 7) / 8); tile++) {
-        int x = tile % ((W + 7) / 8) * 8, y = tile / ((W + 7) / 8) * 8;
-        double sum = 0;
-        int n = 0;
-        for (int j = y; j < y + 8 && j < H; j++)
-            for (int i = x; i < x + 8 && i < W; i++, n++) {
-                double d = difference(a[j * W + i], b[j * W + i]);
-                sum += d * d;
-            }
-        worst = fmax(worst, sum / n);
+    if (bad) {
+        fprintf(stderr, "brume-stability: %s\n", err);
+        abort();
     }
-    return sqrt(worst);
 }
 
-/* Projection of the picture's gradients on the truth's. Noise, which is as
- * often along as against them, does not count. */
-static double sharpness(const picture_t a, const picture_t b)
+static void image_of(struct image *image, const picture_t picture)
 {
-    double both = 0, truth = 0;
-    for (int y = 0; y + 1 < H; y++)
-        for (int x = 0; x + 1 < W; x++) {
-            int i = y * W + x;
-            double ax = (double)a[i + 1] - a[i], ay = (double)a[i + W] - a[i];
-            double bx = (double)b[i + 1] - b[i], by = (double)b[i + W] - b[i];
-            both += ax * bx + ay * by;
-            truth += bx * bx + by * by;
-        }
-    return truth > 0 ? both / truth : 1;
+    for (int i = 0; i < STABILITY_PIXELS; i++)
+        image->f32[i] = (float)(picture[i] / 65535.0);
 }
 
-static void add_picture(struct measure *m, const picture_t picture,
-                        const picture_t truth, int count)
+/* The frame's share of the means over `count` frames. */
+static void add_picture(struct measure *m, const struct image *truth,
+                        const struct image *picture, int count)
 {
-    double n = (double)STABILITY_PIXELS * count;
-    for (int i = 0; i < STABILITY_PIXELS; i++) {
-        double d = difference(picture[i], truth[i]);
-        m->ghosting += fabs(d) / n;
-        m->error += d * d / n;
-        m->bias += d / n;
-    }
-    m->tile = fmax(m->tile, worst_tile(picture, truth));
-    m->sharpness += sharpness(picture, truth) / count;
-}
-
-/* Root of the mean, over pixels, of the variance over time. */
-static double deviation_of(const picture_t *pictures, int count)
-{
-    double variance = 0;
-    for (int i = 0; i < STABILITY_PIXELS; i++) {
-        double sum = 0, square = 0;
-        for (int k = 0; k < count; k++) {
-            double d = difference(pictures[k][i], pictures[0][i]);
-            sum += d;
-            square += d * d;
-        }
-        variance += square / count - sum / count * sum / count;
-    }
-    return sqrt(fmax(0, variance) / STABILITY_PIXELS);
+    struct metrics_error e;
+    double sharpness;
+    char err[128];
+    must(metrics_error(truth, picture, &e, err, sizeof err), err);
+    must(metrics_sharpness(truth, picture, &sharpness, err, sizeof err), err);
+    m->error += e.rmse * e.rmse / count;
+    m->bias += e.mean / count;
+    m->tile = fmax(m->tile, e.worst_tile);
+    m->sharpness += sharpness / count;
 }
 
 struct measure measure_of(const picture_t *pictures, const picture_t *truths,
                           int count, bool fixed)
 {
     struct measure m = {0};
-    for (int k = 0; k < count; k++)
-        add_picture(&m, pictures[k], truths[fixed ? 0 : k], count);
+    struct metrics_sequence sequence = {0};
+    struct metrics_time over_time;
+    struct image a, b;
+    char err[128];
+    must(image_new_f32(&a, STABILITY_WIDTH, STABILITY_HEIGHT, 1, err,
+                       sizeof err) ||
+             image_new_f32(&b, STABILITY_WIDTH, STABILITY_HEIGHT, 1, err,
+                           sizeof err),
+         err);
+    for (int k = 0; k < count; k++) {
+        image_of(&a, truths[fixed ? 0 : k]);
+        image_of(&b, pictures[k]);
+        add_picture(&m, &a, &b, count);
+        must(metrics_add(&sequence, &a, &b, err, sizeof err), err);
+    }
+    metrics_finish(&sequence, &over_time);
+    metrics_free(&sequence);
+    image_free(&a);
+    image_free(&b);
     m.error = sqrt(m.error);
-    for (int k = 1; k < count; k++)
-        for (int i = 0; i < STABILITY_PIXELS; i++) {
-            double change = difference(pictures[k][i], pictures[k - 1][i]);
-            double wanted =
-                fixed ? 0 : difference(truths[k][i], truths[k - 1][i]);
-            m.flicker += fabs(change - wanted) / STABILITY_PIXELS / (count - 1);
-        }
+    m.ghosting = over_time.ghosting;
+    m.flicker = over_time.flicker;
+    m.lag = over_time.lag;
     if (fixed)
-        m.deviation = deviation_of(pictures, count);
+        m.deviation = over_time.deviation;
     return m;
 }

@@ -74,7 +74,8 @@ void truth_render(const struct brume_volume *volume,
 
 /// Measures (measure.c) ///
 
-/* All but the last in 1/255 of white. */
+/* Those of metrics.h, which defines them; all but the last two in 1/255 of
+ * white. */
 struct measure {
     double ghosting;  /* mean |picture - truth| */
     double error;     /* root mean square of the same */
@@ -82,8 +83,8 @@ struct measure {
     double tile;      /* its root mean square in the worst 8x8 tile */
     double flicker;   /* mean |change - change of the truth|, per frame */
     double deviation; /* over time; where the truth is fixed */
-    double sharpness; /* gradients of the picture along those of the truth,
-                         per gradient of the truth: 1 as sharp, 0 flat */
+    double sharpness; /* gradients of the picture along those of the truth */
+    double lag;       /* frames that it is behind the truth */
 };
 
 /* Of `count` pictures of frames one after the other. */
