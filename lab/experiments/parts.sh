@@ -1,0 +1,5 @@
+# SPDX-License-Identifier: MIT
+parts_list() { :; }
+parts_run() { :; }
+## Claims ##
+parts_check() { :; }
