@@ -10,7 +10,7 @@
 # large/VOLUME: some of m4's at the size of error's.
 
 front_volumes="disney smoke cumulus block"
-front_size=128x72 front_m4_size=64x36
+front_size=240x135 front_m4_size=80x45
 [ -z "$QUICK" ] || front_volumes="disney block" front_size=64x36
 
 # What is tried: all combinations within a line. `own` is the format that fits
@@ -30,11 +30,15 @@ front_size=128x72 front_m4_size=64x36
 #   light none  the floor of cost: what any light costs more
 front_grid="
 own       near,tri       none,log6,log10,cone10,cache4,uni64 1,2,4,8 none none none full
+own       near,tri       uni16                1,2,4   none  none none   full
 own       near,tri       cone10,cache4        1,2     none  none none   half,quarter
 own       near,tri,stoch log10,cone10,cache4  1,2,4,8 fast  ema  none   full
 own       near           log6,cone6           2,4,8   fast  ema  none   full
 own       near           none                 4,8     fast  ema  none   full
-own       near,tri       cone10,cache4        2,8     rank1 ema  none   full
+own       near,tri,stoch cone10,cache4        16      fast  ema  none   full,half
+own       stoch          cone10,cache4        2,4,8   fast  ema  none   half
+own       stoch          cone10,cache4        4       fast  win8,ema gauss1 full
+own       near,tri       cone10,cache4        2,8     rank1 ema  none   full,half
 own       near,tri       cone10,cache4        2,8     fast  ema  gauss1 full,half
 own       near,tri       cone10,cache4        2,8     fast  win8 none   full
 own       near,tri       cone10,cache4        2,8     fast  ema  none   half,quarter,checker
