@@ -321,4 +321,53 @@ front_table()
 {
     echo "front_${1%%/*}"
 }
+
+front_derive()
+{
+    set -- "$out/front_error.csv" "$out/front_m4.csv" "$out/front_time.csv"
+    for front_table in front_error front_m4 front_time; do
+        shift
+        [ ! -f "$out/$front_table.csv" ] ||
+            set -- "$@" "$out/$front_table.csv"
+    done
+    awk -f lab/front/join.awk "$@" >"$out/front_all.csv"
+    awk -f lab/front/fronts.awk "$out/front_all.csv" >"$out/front_fronts.csv"
+    awk -v dir="$out" -f lab/front/tables.awk "$out/front_all.csv" \
+        "$out/front_fronts.csv"
+    {
+        echo "front_size,$front_size"
+        echo "front_m4_size,$front_m4_size"
+        echo "front_settings,$(front_settings disney | wc -l)"
+    } >>"$out/settings.csv"
+    [ ! -f "$out/front_large.csv" ] || front_derive_large
+}
+
+# How far the small picture's count is from that of the picture itself.
+front_derive_large()
+{
+    awk -F, -v OFS=, '
+        FNR == 1 {
+            if (NR == 1)
+                print "volume", "setting", "small", "large", "ratio"
+            file++
+            next
+        }
+        { count = ($6 + $7 + $8) / $4 }
+        file == 1 { small[$1, $2] = count }
+        file == 2 {
+            printf "%s,%s,%.1f,%.1f,%.4f\n", $1, $2, small[$1, $2], count, \
+                small[$1, $2] / count
+        }' "$out/front_m4.csv" "$out/front_large.csv" >"$out/front_small.csv"
+    awk -F, 'NR > 1 {
+            off = $5 > 1 ? $5 - 1 : 1 - $5
+            most = off > most ? off : most
+            sum += off
+            n++
+        }
+        END {
+            print "value,share"
+            printf "most,%.4f\nmean,%.4f\n", most, sum / n
+        }' "$out/front_small.csv" >"$out/front_off.csv"
+}
+
 front_check() { :; }
