@@ -11,6 +11,7 @@ set boxwidth 0.8
 set style fill solid 0.9 noborder
 unset xtics
 unset key
+set xrange [-0.5:*]
 parts = "quantisation step light filter exit noise arithmetic all"
 colours = "#8c564b #1f77b4 #ff7f0e #2ca02c #17becf #9467bd #444444 #d62728"
 chart = dir . "/parts_chart.csv"

@@ -18,8 +18,8 @@ front_size=240x135 front_m4_size=80x45
 #   taa         at rest it is ema to the bit, and costs more: docs/temporal.md
 #   cache2, 8   they cost what cache4 does; the choice is one of memory and
 #               error, docs/light.md
-#   uniform     beyond 64 samples, and with noise: 64 alone take longer than
-#               all else, and what jitter averages over 10 samples it has not
+#   uniform     beyond 64 samples, and nearest over time: 64 alone take longer
+#               than all else
 #   no noise    over time: every frame would be the same
 #   no time     with steps above 2 and no filter: grain. With gauss1 it is
 #               in, for who has no memory for a history
@@ -36,6 +36,9 @@ own       near,tri,stoch log10,cone10,cache4  1,2,4,8 fast  ema  none   full
 own       near           log6,cone6           2,4,8   fast  ema  none   full
 own       near           none                 4,8     fast  ema  none   full
 own       near,tri,stoch cone10,cache4        16      fast  ema  none   full,half
+own       near           cone10,cache4        16      fast  ema  none   quarter
+own       tri            uni16,uni64          1,2,4   fast  ema  none   full
+own       near,tri       cone10,cache4        4       fast  ema  none   half,checker
 own       stoch          cone10,cache4        2,4,8   fast  ema  none   half
 own       stoch          cone10,cache4        4       fast  win8,ema gauss1 full
 own       near,tri       cone10,cache4        2,8     rank1 ema  none   full,half
@@ -229,14 +232,23 @@ front_time()
 
 ## On a Cortex-M4 ##
 
-# The program that counts, built once a run of make.
-front_count_elf()
+# front_elf: path of the program that counts. Built by one unit, others wait.
+front_elf()
+{
+    front_at=$lab/targets/$({
+        echo "$inputs"
+        cat lab/target/*.[ch]
+    } | hash_of).elf
+    once "$front_at" front_build && echo "$front_at"
+}
+
+front_build()
 {
     (
         unset MAKEFLAGS MAKELEVEL CC CFLAGS CPPFLAGS LDFLAGS CONF TARGET
         make -s BUILD="$BUILD" CONF=mps2-an386 TARGET=lab-m4 \
-            "$BUILD/targets/lab-m4/count.elf" >&2
-    )
+            "$BUILD/targets/lab-m4/count.elf"
+    ) && cp "$BUILD/targets/lab-m4/count.elf" "$1"
 }
 
 # front_pack VOLUME SIZE RECORDS: of settings on stdin. Two frames over time:
@@ -267,8 +279,7 @@ front_emulate()
         -semihosting-config enable=on,target=native \
         -device "loader,file=$front_brume,addr=0x21000000,force-raw=on" \
         -device "loader,file=$front_records,addr=0x21800000,force-raw=on" \
-        -kernel "$BUILD/targets/lab-m4/count.elf" >"$front_records.out" \
-        </dev/null
+        -kernel "$(front_elf)" >"$front_records.out" </dev/null
     echo "$front_names" | awk -v v="$1" -v size="$3" -v OFS=, \
         -v counts="$front_records.out" '{
             if ((getline line <counts) < 1 || split(line, c, " ") != 7 || \
@@ -287,7 +298,7 @@ front_m4()
     command -v arm-none-eabi-gcc >/dev/null || return 3
     command -v qemu-system-arm >/dev/null || return 3
     volume "front-$1-u8" >/dev/null || return
-    front_count_elf || return 1
+    front_elf >/dev/null || return 1
     echo "volume,setting,size,pixels,begin,trace,resolve,show"
     front_all=$(cat)
     for front_one in u8 u8r u4r; do
