@@ -17,16 +17,16 @@ static void put(struct words *to, uint32_t word)
     to->word[to->count++] = word;
 }
 
-#define PUT_ONE(field) put(w, (uint32_t)from->field);
+#define PUT_ONE(field) put(w, (uint32_t)from->field)
 #define PUT_THREE(field) \
     for (int i = 0; i < 3; i++) \
-        put(w, (uint32_t)from->field[i]);
+    put(w, (uint32_t)from->field[i])
 #define PUT_LONG(field) \
-    put(w, (uint32_t)from->field), put(w, (uint32_t)(from->field >> 32));
+    put(w, (uint32_t)from->field), put(w, (uint32_t)(from->field >> 32))
 
 static void put_scene(struct words *w, const struct brume_scene *from)
 {
-    RECORD_SCENE_FIELDS(PUT_ONE, PUT_THREE, PUT_LONG)
+    RECORD_SCENE_FIELDS(PUT_ONE, PUT_THREE, PUT_LONG);
 }
 
 static void put_light(struct words *w, const struct brume_lighting *from)
@@ -34,7 +34,7 @@ static void put_light(struct words *w, const struct brume_lighting *from)
     put(w, from != NULL);
     if (from == NULL)
         return;
-    RECORD_LIGHT_FIELDS(PUT_ONE, PUT_THREE, PUT_LONG)
+    RECORD_LIGHT_FIELDS(PUT_ONE, PUT_THREE, PUT_LONG);
 }
 
 /* The table's head; how many bytes of values follow the words. */
@@ -43,7 +43,7 @@ static size_t put_noise(struct words *w, const struct brume_noise_table *from)
     put(w, from != NULL);
     if (from == NULL)
         return 0;
-    RECORD_NOISE_FIELDS(PUT_ONE, PUT_THREE, PUT_LONG)
+    RECORD_NOISE_FIELDS(PUT_ONE, PUT_THREE, PUT_LONG);
     const unsigned log2 =
         (unsigned)from->width_log2 + from->height_log2 + from->frames_log2;
     return ((size_t)1 << log2) * from->bits / 8;

@@ -73,7 +73,7 @@ do for [error in "rmse31 flip31"] {
         (row(word(volumes, i), error, "m4") ? $6 : NaN):7 with linespoints \
         pt 7 ps 0.4 lw 1.6 lc rgb word(colours, i) title word(volumes, i), \
         for [i=1:4] fronts using \
-        (row(word(volumes, i), error, "m4") && $8 > 0 ? $6 : NaN):7 with points \
-        pt 6 ps 1.8 lw 2 lc rgb word(colours, i) notitle
+        (row(word(volumes, i), error, "m4") && $8 > 0 ? $6 : NaN):7 \
+        with points pt 6 ps 1.8 lw 2 lc rgb word(colours, i) notitle
 }
 unset multiplot

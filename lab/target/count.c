@@ -35,25 +35,23 @@ static struct brume_cache s_cache;
 /// Records ///
 
 /* Fields are narrower than words, or bool; what was packed fits. */
-#define GET_ONE(field) to->field = (__typeof__(to->field))*w++;
+#define GET_ONE(field) to->field = (__typeof__(to->field))*w++
 #define GET_THREE(field) \
     for (int i = 0; i < 3; i++) \
-        to->field[i] = (__typeof__(to->field[i]))*w++;
-#define GET_LONG(field) \
-    to->field = w[0] | (uint64_t)w[1] << 32; \
-    w += 2;
+    to->field[i] = (__typeof__(to->field[i]))*w++
+#define GET_LONG(field) to->field = w[0] | (uint64_t)w[1] << 32, w += 2
 
 static const uint32_t *get_light(const uint32_t *w)
 {
     struct brume_lighting *to = &s_light;
-    RECORD_LIGHT_FIELDS(GET_ONE, GET_THREE, GET_LONG)
+    RECORD_LIGHT_FIELDS(GET_ONE, GET_THREE, GET_LONG);
     return w;
 }
 
 static const uint32_t *get_noise(const uint32_t *w)
 {
     struct brume_noise_table *to = &s_noise;
-    RECORD_NOISE_FIELDS(GET_ONE, GET_THREE, GET_LONG)
+    RECORD_NOISE_FIELDS(GET_ONE, GET_THREE, GET_LONG);
     return w;
 }
 
@@ -61,7 +59,7 @@ static int get_scene(const uint32_t *w)
 {
     struct brume_scene *to = &s_scene;
     int error = BRUME_OK;
-    RECORD_SCENE_FIELDS(GET_ONE, GET_THREE, GET_LONG)
+    RECORD_SCENE_FIELDS(GET_ONE, GET_THREE, GET_LONG);
     to->lighting = NULL;
     to->noise_table = NULL;
     if (*w++) {

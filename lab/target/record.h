@@ -19,26 +19,59 @@
 #define RECORD_SCENE 128 /* words of scene and lighting, at most */
 
 #define RECORD_SCENE_FIELDS(ONE, THREE, LONG) \
-    ONE(width) \
-    ONE(height) ONE(frame) THREE(eye) THREE(target) THREE(up) ONE(fov) \
-        THREE(sun) LONG(density_scale) LONG(light_density_scale) \
-            LONG(min_density) LONG(max_density) ONE(albedo) ONE(step) \
-                ONE(light_step) ONE(min_transmittance) THREE(background) \
-                    ONE(light_samples) ONE(filter) ONE(light) ONE(jitter) \
-                        ONE(noise) ONE(output) ONE(skip) ONE(temporal) \
-                            ONE(history_bits) ONE(window) ONE(fetch) \
-                                ONE(clamp) ONE(spatial) ONE(resolution) \
-                                    ONE(update) ONE(upsample) ONE(subpixel) \
-                                        ONE(cut) ONE(alpha) ONE(gamma) \
-                                            ONE(edge_falloff)
+    ONE(width); \
+    ONE(height); \
+    ONE(frame); \
+    THREE(eye); \
+    THREE(target); \
+    THREE(up); \
+    ONE(fov); \
+    THREE(sun); \
+    LONG(density_scale); \
+    LONG(light_density_scale); \
+    LONG(min_density); \
+    LONG(max_density); \
+    ONE(albedo); \
+    ONE(step); \
+    ONE(light_step); \
+    ONE(min_transmittance); \
+    THREE(background); \
+    ONE(light_samples); \
+    ONE(filter); \
+    ONE(light); \
+    ONE(jitter); \
+    ONE(noise); \
+    ONE(output); \
+    ONE(skip); \
+    ONE(temporal); \
+    ONE(history_bits); \
+    ONE(window); \
+    ONE(fetch); \
+    ONE(clamp); \
+    ONE(spatial); \
+    ONE(resolution); \
+    ONE(update); \
+    ONE(upsample); \
+    ONE(subpixel); \
+    ONE(cut); \
+    ONE(alpha); \
+    ONE(gamma); \
+    ONE(edge_falloff)
 
 /* Of lighting what `light = cache` sets; anything else is refused. */
 #define RECORD_LIGHT_FIELDS(ONE, THREE, LONG) \
-    ONE(octaves) \
-    ONE(octave_a) ONE(octave_b) ONE(exposure) THREE(sun_colour) THREE(zenith)
+    ONE(octaves); \
+    ONE(octave_a); \
+    ONE(octave_b); \
+    ONE(exposure); \
+    THREE(sun_colour); \
+    THREE(zenith)
 
 #define RECORD_NOISE_FIELDS(ONE, THREE, LONG) \
-    ONE(width_log2) ONE(height_log2) ONE(frames_log2) ONE(bits)
+    ONE(width_log2); \
+    ONE(height_log2); \
+    ONE(frames_log2); \
+    ONE(bits)
 
 /* Bit by bit: no table, and a picture is small. From and to 0xffffffff. */
 static inline uint32_t record_crc(const uint8_t *bytes, uint32_t size)
