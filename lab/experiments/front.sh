@@ -376,8 +376,8 @@ front_derive_large()
             n++
         }
         END {
-            print "value,share"
-            printf "most,%.4f\nmean,%.4f\n", most, sum / n
+            print "name,value"
+            printf "settings,%d\nmost,%.4f\nmean,%.4f\n", n, most, sum / n
         }' "$out/front_small.csv" >"$out/front_off.csv"
 }
 

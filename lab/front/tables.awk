@@ -4,7 +4,9 @@
 #   front_VOLUME.csv   every setting that is on a front, with its number
 #   front_budget.csv   of each volume and cost the best within a budget, at
 #                      frame 31 and at frame 3
-#   front_share.csv    how many points of the fronts at frame 31 have what
+#   front_share.csv    how many points of the fronts of RMSE at frame 31 by
+#                      the M4's cost have what: all of them, those below 2000
+#                      instructions per pixel, to 10000, and above
 
 # Which fronts a point is on: R of RMSE and F of FLIP at frame 31, r and f at
 # frame 3; * its knee.
@@ -63,25 +65,35 @@ function write_budgets(    file, v, c, b, n, budget, key, early)
     close(file)
 }
 
-function write_shares(    file, k, s)
+function write_shares(    file, k)
 {
     file = dir "/front_share.csv"
-    print "what", "points", "of" >file
+    print "what", "all", "cheap", "middle", "dear" >file
     for (k = 1; k <= shares; k++)
-        print share[k], count[share[k]], of >file
+        print share[k], count[share[k]] + 0, count[share[k], "cheap"] + 0, \
+            count[share[k], "middle"] + 0, count[share[k], "dear"] + 0 >file
     close(file)
 }
 
-function add_shares(key,    n, i, word)
+# Without a band: of a setting that may be on no front, so that 0 is a figure.
+function add_share(what, band)
 {
-    of++
-    n = split(parts[key], word, ",")
-    for (i = 1; i <= n; i++) {
-        word[i] = part_name[i] "-" word[i]
-        if (!(word[i] in count))
-            share[++shares] = word[i]
-        count[word[i]]++
+    if (!(what in known)) {
+        known[what] = 1
+        share[++shares] = what
     }
+    if (band != "") {
+        count[what]++
+        count[what, band]++
+    }
+}
+
+function add_shares(key, band,    n, i, word)
+{
+    add_share("points", band)
+    n = split(parts[key], word, ",")
+    for (i = 1; i <= n; i++)
+        add_share(part_name[i] "-" word[i], band)
 }
 
 BEGIN {
@@ -103,6 +115,7 @@ file_number == 1 {
         figure[key, name[i]] = $i
     for (i = 3; i <= 10; i++)
         parts[key] = parts[key] (i > 3 ? OFS : "") $i
+    add_shares(key, "")
     next
 }
 {
@@ -119,7 +132,7 @@ file_number == 1 {
     mark = $4 ~ /31$/ ? toupper(substr($4, 1, 1)) : substr($4, 1, 1)
     on[key, $5] = on[key, $5] (on[key, $5] ? " " : "") mark ($8 ? "*" : "")
     if ($4 == "rmse31" && $5 == "m4")
-        add_shares(key)
+        add_shares(key, $6 < 2000 ? "cheap" : $6 < 10000 ? "middle" : "dear")
 }
 END {
     for (v = 1; v <= volumes; v++)
