@@ -381,4 +381,73 @@ front_derive_large()
         }' "$out/front_small.csv" >"$out/front_off.csv"
 }
 
-front_check() { :; }
+front_at() # VOLUME SETTING COLUMN
+{
+    front_own=u8
+    [ "$1" != smoke ] || front_own=u8r
+    value front_all "$3" "volume=$1" "setting=$front_own-$2"
+}
+
+front_share() { value front_share "$2" "what=$1"; }
+
+front_check()
+{
+    # Nine times fewer pixels: their outlines are cut in other places.
+    claim front_small "$(value front_off value name=most)" \< 0.03 \
+        "M4: a small picture counts as a large one within 3 %"
+    for front_volume in $front_volumes; do
+        claim "front_ema_$front_volume" \
+            "$(front_at "$front_volume" near-cone10-8-fast-ema-none-full \
+                rmse31)" \< \
+            "$(front_at "$front_volume" near-cone10-8-fast-ema-none-full \
+                rmse3)" \
+            "$front_volume: EMA goes on to help after frame 3"
+        # A quarter of the rays, and what all pixels take.
+        claim "front_half_$front_volume" \
+            "$(front_at "$front_volume" near-cone10-2-fast-ema-none-half m4)" \
+            \< "0.4 * $(front_at "$front_volume" \
+                near-cone10-2-fast-ema-none-full m4)" \
+            "$front_volume: half resolution costs less than 0.4 on the M4"
+        claim "front_cache_$front_volume" \
+            "$(front_at "$front_volume" near-cache4-2-none-none-none-full m4)" \
+            \< "$(front_at "$front_volume" \
+                near-log10-2-none-none-none-full m4)" \
+            "$front_volume: the light cache costs less than doubling samples"
+    done
+    [ -n "$QUICK" ] || front_check_grid
+}
+
+# What needs the whole grid.
+front_check_grid()
+{
+    for front_volume in $front_volumes; do
+        claim "front_uniform_$front_volume" \
+            "$(front_at "$front_volume" tri-uni64-2-fast-ema-none-full \
+                rmse31)" \< \
+            "$(front_at "$front_volume" tri-cone10-1-fast-ema-none-full \
+                rmse31)" \
+            "$front_volume: 64 uniform samples at step 2 over time below ten \
+cones at step 1"
+        claim "front_noise_$front_volume" \
+            "$(front_at "$front_volume" near-cone10-4-fast-ema-none-full \
+                rmse31)" \< \
+            "$(front_at "$front_volume" near-cone10-4-white-ema-none-full \
+                rmse31)" \
+            "$front_volume: fast below white, at the same cost"
+    done
+    claim front_temporal "$(front_share temporal-ema all)" \> \
+        "0.8 * $(front_share points all)" \
+        "of the fronts at frame 31 more than 0.8 have EMA"
+    claim front_rays "$(front_share rays-full cheap)" \< \
+        "0.2 * $(front_share points cheap)" \
+        "below 2000 instructions per pixel less than 0.2 march every ray"
+    claim front_light "$(front_share light-cache4 cheap)" \> \
+        "0.8 * $(front_share points cheap)" \
+        "there more than 0.8 take light from the cache"
+    claim front_lookup "$(front_share lookup-tri middle) +
+            $(front_share lookup-tri dear)" \> \
+        "0.8 * ($(front_share points middle) + $(front_share points dear))" \
+        "above more than 0.8 are trilinear"
+    claim front_floor "$(front_share light-none all)" \< 1 \
+        "none is without light"
+}

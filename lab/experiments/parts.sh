@@ -230,14 +230,20 @@ parts_derive()
 parts_check()
 {
     for parts_volume in $parts_volumes; do
-        for parts_filter in nearest trilinear; do
-            # A step of 1 of 255 is 0.0039.
-            claim "parts_arithmetic_${parts_filter}_$parts_volume" \
-                "$(parts_at "$parts_volume" arithmetic $parts_filter)" \
-                \< 0.0013 \
-                "$parts_volume, $parts_filter: integers err by less than 1/3 \
-of 1/255"
-        done
+        # Rounding to 8 bits errs by up to 1/2 of 1/255, and by 1/sqrt(12) of
+        # it in the mean square.
+        claim "parts_arithmetic_trilinear_$parts_volume" \
+            "$(parts_at "$parts_volume" arithmetic trilinear)" \
+            \< "1 / 255 / sqrt(12)" \
+            "$parts_volume, trilinear: integers err by less than codes of 8 \
+bits do"
+        # Nearest, a sample within 2^-16 of a voxel's face may read the next
+        # one, in a picture of single samples.
+        claim "parts_arithmetic_nearest_$parts_volume" \
+            "$(parts_at "$parts_volume" arithmetic nearest)" \< \
+            "0.25 * $(parts_at "$parts_volume" filter nearest)" \
+            "$parts_volume, nearest: by less than a quarter of what nearest \
+lookups do"
         claim "parts_light_$parts_volume" \
             "$(parts_at "$parts_volume" light cone10)" \< \
             "$(parts_at "$parts_volume" light log10)" \
@@ -248,6 +254,10 @@ of 1/255"
             "$parts_volume: EMA leaves less than half of the noise"
         claim "parts_exit_$parts_volume" \
             "$(parts_at "$parts_volume" exit 0.01)" \< 0.005 \
-            "$parts_volume: early exit at 0.01 errs by less than half of that"
+            "$parts_volume: early exit at 0.01 errs by less than 0.005"
     done
+    [ -n "$QUICK" ] || claim parts_smoke_range \
+        "$(parts_at smoke quantisation u8r)" \< \
+        "0.5 * $(parts_at smoke quantisation u8)" \
+        "smoke: a range per brick errs by less than half of one scale"
 }

@@ -6,7 +6,8 @@
 #                      frame 31 and at frame 3
 #   front_share.csv    how many points of the fronts of RMSE at frame 31 by
 #                      the M4's cost have what: all of them, those below 2000
-#                      instructions per pixel, to 10000, and above
+#                      instructions per pixel, to 10000, and above; and of
+#                      those at frame 3
 
 # Which fronts a point is on: R of RMSE and F of FLIP at frame 31, r and f at
 # frame 3; * its knee.
@@ -68,10 +69,11 @@ function write_budgets(    file, v, c, b, n, budget, key, early)
 function write_shares(    file, k)
 {
     file = dir "/front_share.csv"
-    print "what", "all", "cheap", "middle", "dear" >file
+    print "what", "all", "cheap", "middle", "dear", "early" >file
     for (k = 1; k <= shares; k++)
         print share[k], count[share[k]] + 0, count[share[k], "cheap"] + 0, \
-            count[share[k], "middle"] + 0, count[share[k], "dear"] + 0 >file
+            count[share[k], "middle"] + 0, count[share[k], "dear"] + 0, \
+            count[share[k], "early"] + 0 >file
     close(file)
 }
 
@@ -82,10 +84,10 @@ function add_share(what, band)
         known[what] = 1
         share[++shares] = what
     }
-    if (band != "") {
-        count[what]++
+    if (band != "")
         count[what, band]++
-    }
+    if (band != "" && band != "early")
+        count[what]++
 }
 
 function add_shares(key, band,    n, i, word)
@@ -133,6 +135,8 @@ file_number == 1 {
     on[key, $5] = on[key, $5] (on[key, $5] ? " " : "") mark ($8 ? "*" : "")
     if ($4 == "rmse31" && $5 == "m4")
         add_shares(key, $6 < 2000 ? "cheap" : $6 < 10000 ? "middle" : "dear")
+    if ($4 == "rmse3" && $5 == "m4")
+        add_shares(key, "early")
 }
 END {
     for (v = 1; v <= volumes; v++)
