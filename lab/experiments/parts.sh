@@ -224,7 +224,10 @@ parts_derive()
         $1 == volume && $2 != part { at++ }
         { volume = $1; part = $2; print $1, ++at, $2, $2 " " $3, $4 }
     ' "$out/parts_table.csv" >"$out/parts_chart.csv"
-    echo "parts_size,$parts_size" >>"$out/settings.csv"
+    {
+        echo "parts_size,$parts_size"
+        echo "parts_frames,$parts_frames"
+    } >>"$out/settings.csv"
 }
 
 parts_check()
