@@ -410,9 +410,9 @@ front_check()
             "$front_volume: half resolution costs less than 0.4 on the M4"
         claim "front_cache_$front_volume" \
             "$(front_at "$front_volume" near-cache4-2-none-none-none-full m4)" \
-            \< "$(front_at "$front_volume" \
-                near-log10-2-none-none-none-full m4)" \
-            "$front_volume: the light cache costs less than doubling samples"
+            \< "0.5 * $(front_at "$front_volume" \
+                near-cone10-2-none-none-none-full m4)" \
+            "$front_volume: with the light cache half of what ten cones cost"
     done
     [ -n "$QUICK" ] || front_check_grid
 }
