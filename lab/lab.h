@@ -5,6 +5,7 @@
  *   options.c   the command line
  *   picture.c   rows; of a picture that was drawn elsewhere
  *   sequence.c  frames of a scene, of a path, over time
+ *   pack.c      a scene for a target, with the picture that it should draw
  *   measure.c   pictures against a reference, by region: what a row holds
  */
 #ifndef BRUME_LAB_H
@@ -40,6 +41,7 @@ struct lab_column {
 
 struct lab_options {
     bool is_picture; /* the command `picture`: volume is one */
+    bool is_pack;    /* the command `pack` */
     const char *volume;
     struct scene_settings settings;
     const char *path;           /* of keyframes, or NULL */
@@ -49,7 +51,10 @@ struct lab_options {
     int pixels; /* enum brume_pixel_format of 8 bits; -1: linear light */
     int threads;
     enum wide_kernel kernel;
-    bool time; /* adds the column ms */
+    bool time;               /* adds the column ms */
+    bool flip;               /* adds the column flip */
+    uint32_t only[LAB_MOST]; /* rows of these frames alone, if any */
+    int only_count;
     struct lab_reference references[LAB_MOST];
     struct lab_region regions[LAB_MOST]; /* the first is the whole */
     struct lab_column columns[LAB_MOST];
@@ -63,6 +68,7 @@ int lab_read_options(struct lab_options *options, int argc, char **argv);
 
 int lab_sequence(const struct lab_options *options, char *err, size_t err_size);
 int lab_picture(const struct lab_options *options, char *err, size_t err_size);
+int lab_pack(const struct lab_options *options, char *err, size_t err_size);
 
 /// Measures ///
 
@@ -71,6 +77,7 @@ int lab_picture(const struct lab_options *options, char *err, size_t err_size);
 struct lab_pair {
     const struct image *picture, *truth;
     const struct image *before, *truth_before;
+    bool flip; /* measure it as well: it takes as long as a frame */
 };
 
 /* Columns, with commas between, and their values for a region. A measure that

@@ -2,10 +2,11 @@
 # methods fail. Included by the Makefile for CONF=host.
 .PHONY: lab lab-quick lab-unit lab-programs lab-deps
 
-LAB_PACKAGES = $(PACKAGES) gnuplot-nox librsvg2-bin
+LAB_PACKAGES = $(PACKAGES) gnuplot-nox librsvg2-bin gcc-arm-none-eabi \
+	qemu-system-arm
 LAB_OBJ = $(patsubst lab/%.c,$(BUILD)/lab/obj/%.o,$(wildcard lab/*.c))
 LAB_PROGRAMS = $(BUILD)/brume-lab $(BUILD)/brume-reference \
-	$(BUILD)/brume-monte-carlo
+	$(BUILD)/brume-monte-carlo $(BUILD)/brume-spec-dump
 LAB_TIMED = $(BUILD)/brume-bench # of the full laboratory: NanoVDB
 LAB_RUN = BUILD=$(BUILD) DATA=$(DATA) JOBS=$(JOBS) sh lab/run.sh
 

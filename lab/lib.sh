@@ -70,6 +70,7 @@ volume()
     smoke) volume_how="bake_from $DATA/openvdb_smoke1.vdb u8r" ;;
     cumulus) volume_how="bake_cloud cumulus 256 u8" ;;
     cube) volume_how="bake_cloud block 96 u8" ;;
+    front-*) volume_how=$(front_how "$1") || return ;;
     *)
         echo "lab: there is no volume '$1'" >&2
         return 1
@@ -100,8 +101,8 @@ voxels()
 vdb()
 {
     case $1 in
-    disney) echo "$DATA/wdas_cloud_sixteenth.vdb" ;;
-    smoke) echo "$DATA/openvdb_smoke1.vdb" ;;
+    disney | front-disney-*) echo "$DATA/wdas_cloud_sixteenth.vdb" ;;
+    smoke | front-smoke-*) echo "$DATA/openvdb_smoke1.vdb" ;;
     *) echo "$(dirname "$(volume "$1")")/made.vdb" ;;
     esac
 }

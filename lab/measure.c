@@ -6,12 +6,13 @@
 #include <math.h>
 #include <string.h>
 
-#include "compare.h"
 #include "lab.h"
+#include "metrics.h"
 
 /* rmse, mean: of picture - truth. spread: sqrt(rmse^2 - mean^2), the error
  * that is left when a constant is taken off. flicker: the mean of
  * |change - change of the truth| since the frame before. */
+/* flip, when asked for, comes behind them: the mean of LDR-FLIP. */
 const char lab_measure_names[] = "rmse,mean,spread,psnr,max,worst_tile,flicker";
 
 /* Pixels x0 <= x < x1, y0 <= y < y1; at least one. */
@@ -79,12 +80,25 @@ static double flicker_of(const struct lab_pair *p, const struct box *b)
     return sum / ((double)(b->x1 - b->x0) * (b->y1 - b->y0) * (double)c);
 }
 
+/* Of linear light as it is shown, or of the codes that are shown. */
+static int print_flip(FILE *to, const struct lab_pair *pair,
+                      const struct image *picture, const struct image *truth,
+                      char *err, size_t err_size)
+{
+    struct metrics_flip flip;
+    if (metrics_flip(truth, picture, pair->picture->u8 == NULL,
+                     METRICS_FLIP_DEGREE, &flip, NULL, err, err_size) != 0)
+        return -1;
+    fprintf(to, ",%.5g", flip.mean);
+    return 0;
+}
+
 /* Those of whole pictures. */
 static int compare(FILE *to, const struct image *picture,
                    const struct image *truth, char *err, size_t err_size)
 {
-    struct compare_result r;
-    if (image_compare(truth, picture, &r, err, err_size) != 0)
+    struct metrics_error r;
+    if (metrics_error(truth, picture, &r, err, err_size) != 0)
         return -1;
     double rmse = r.rmse / 255, mean = r.mean / 255;
     double spread = sqrt(fmax(rmse * rmse - mean * mean, 0));
@@ -106,6 +120,8 @@ int lab_measure(FILE *to, const struct lab_pair *pair,
               compare(to, &picture, &truth, err, err_size) != 0;
     if (!bad && pair->before != NULL)
         fprintf(to, "%.5g", flicker_of(pair, &box));
+    if (!bad && pair->flip)
+        bad = print_flip(to, pair, &picture, &truth, err, err_size) != 0;
     image_free(&picture);
     image_free(&truth);
     return bad ? -1 : 0;

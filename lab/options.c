@@ -14,16 +14,21 @@ static const char k_usage[] =
     "                 [--frames A:B] [--reference NAME=FILE]... [OPTION]...\n"
     "       brume-lab picture FILE --reference NAME=FILE... [--region ...]\n"
     "                 [--column ...]\n"
+    "       brume-lab pack VOLUME.brume [--scene FILE] [--set KEY=VALUE]...\n"
+    "                 [--frames 0:B]\n"
     "\n"
     "Draws frames in memory and prints how far each is from each reference, "
     "in\n"
     "the whole picture and in regions, as CSV. White is 1.\n"
-    "`picture` does so with a picture that is there.\n"
+    "`picture` does so with a picture that is there. `pack` writes the scene "
+    "and a\n"
+    "checksum of its last frame for lab/target/count.c.\n"
     "\n"
     "  --scene FILE, --set KEY=VALUE, --path FILE, --kernel NAME\n"
     "                    as of brume render\n"
     "  --frames A:B      frames A to B, in a row (0:0)\n"
     "  --from N          rows begin at frame N (A)\n"
+    "  --only N          rows of frame N, and of others so named\n"
     "  --reference NAME=FILE\n"
     "                    a picture to compare with (.pfm .png); with %d in "
     "its\n"
@@ -35,6 +40,7 @@ static const char k_usage[] =
     "                    a column in front, the same in every row\n"
     "  --pixels FORMAT   linear, or codes as a panel shows them, as of brume "
     "render\n"
+    "  --flip            a column flip: the mean of LDR-FLIP\n"
     "  --time            a column ms: processor time of the frame\n"
     "  --mean FILE       also write the mean of all frames (.pfm)\n"
     "  --picture FILE    also write the last frame (.pfm; of a panel .png)\n"
@@ -181,6 +187,12 @@ static int read_count(struct lab_options *o, const char *name,
     int status = -1;
     if (strcmp(name, "--from") == 0)
         return read_number(name, value, 0, UINT32_MAX, &o->from);
+    if (strcmp(name, "--only") == 0) {
+        if (o->only_count == LAB_MOST)
+            return usage("more than 16 frames: ", value);
+        return read_number(name, value, 0, UINT32_MAX,
+                           &o->only[o->only_count++]);
+    }
     if (strcmp(name, "--threads") == 0) {
         status = read_number(name, value, 1, POOL_MAX, &n);
         o->threads = (int)n;
@@ -222,7 +234,7 @@ static bool takes_value(const char *name)
     static const char *const names[] = {
         "--scene",  "--set",     "--frames", "--reference", "--region",
         "--kernel", "--column",  "--path",   "--mean",      "--picture",
-        "--from",   "--threads", "--pixels"};
+        "--from",   "--threads", "--pixels", "--only"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (strcmp(name, names[i]) == 0)
             return true;
@@ -234,7 +246,8 @@ static int check(const struct lab_options *o)
     if (o->volume == NULL)
         return usage(o->is_picture ? "no picture given" : "no volume given",
                      "");
-    if (o->reference_count == 0 && o->mean == NULL && o->picture == NULL)
+    if (!o->is_pack && o->reference_count == 0 && o->mean == NULL &&
+        o->picture == NULL)
         return usage("no --reference, --mean or --picture given", "");
     if (o->from > o->last)
         return usage("--from is behind the last frame", "");
@@ -252,8 +265,10 @@ int lab_read_options(struct lab_options *o, int argc, char **argv)
     if (argc > 1 && strcmp(argv[1], "--help") == 0)
         return fputs(k_usage, stdout) < 0;
     o->is_picture = argc > 1 && strcmp(argv[1], "picture") == 0;
-    if (!o->is_picture && (argc < 2 || strcmp(argv[1], "sequence") != 0))
-        return usage("the commands are sequence and picture, not ",
+    o->is_pack = argc > 1 && strcmp(argv[1], "pack") == 0;
+    if (!o->is_picture && !o->is_pack &&
+        (argc < 2 || strcmp(argv[1], "sequence") != 0))
+        return usage("the commands are sequence, picture and pack, not ",
                      argc < 2 ? "nothing" : argv[1]);
     for (int i = 2; i < argc; i++) {
         int status = -1;
@@ -261,6 +276,8 @@ int lab_read_options(struct lab_options *o, int argc, char **argv)
             return fputs(k_usage, stdout) < 0;
         if (strcmp(argv[i], "--time") == 0)
             o->time = true;
+        else if (strcmp(argv[i], "--flip") == 0)
+            o->flip = true;
         else if (takes_value(argv[i]) && i + 1 < argc)
             status = read_option(o, argv[i], argv[i + 1]), i++;
         else if (takes_value(argv[i]))

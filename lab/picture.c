@@ -26,8 +26,8 @@ void lab_print_head(const struct lab_options *o, FILE *to)
 {
     for (int i = 0; i < o->column_count; i++)
         fprintf(to, "%s,", o->columns[i].name);
-    fprintf(to, "frame,reference,region,%s%s\n", lab_measure_names,
-            o->time ? ",ms" : "");
+    fprintf(to, "frame,reference,region,%s%s%s\n", lab_measure_names,
+            o->flip ? ",flip" : "", o->time ? ",ms" : "");
 }
 
 int lab_print_row(const struct lab_options *o, FILE *to, uint32_t frame,
@@ -68,7 +68,7 @@ static int measure_all(const struct lab_options *o, const struct image *picture,
                        struct image *truth, FILE *rows, char *err,
                        size_t err_size)
 {
-    const struct lab_pair pair = {picture, truth, NULL, NULL};
+    const struct lab_pair pair = {picture, truth, NULL, NULL, o->flip};
     int status = 0;
     for (int i = 0; status == 0 && i < o->reference_count; i++) {
         status = lab_read_truth(o->references[i].path, picture, truth, err,

@@ -139,9 +139,18 @@ static int print_row(struct run *r, uint32_t frame, int ref, int region)
     const bool first = frame == o->first;
     const struct lab_pair pair = {&r->pictures[now], &r->truths[ref][now],
                                   first ? NULL : &r->pictures[then],
-                                  first ? NULL : &r->truths[ref][then]};
+                                  first ? NULL : &r->truths[ref][then],
+                                  o->flip};
     return lab_print_row(o, r->rows, frame, ref, region, &pair, r->ms, r->err,
                          r->err_size);
+}
+
+static bool has_rows(const struct lab_options *o, uint32_t frame)
+{
+    bool wanted = o->only_count == 0;
+    for (int i = 0; i < o->only_count; i++)
+        wanted |= o->only[i] == frame;
+    return wanted && frame >= o->from;
 }
 
 static int one_frame(struct run *r, uint32_t frame)
@@ -153,8 +162,9 @@ static int one_frame(struct run *r, uint32_t frame)
         status = draw(r, &scene, &r->pictures[frame & 1]);
     for (int i = 0; status == 0 && i < o->reference_count; i++) {
         status = read_truth(r, i, frame);
-        for (int k = 0; status == 0 && frame >= o->from && k < o->region_count;
-             k++)
+        if (!has_rows(o, frame))
+            continue;
+        for (int k = 0; status == 0 && k < o->region_count; k++)
             status = print_row(r, frame, i, k);
     }
     return status;

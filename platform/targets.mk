@@ -48,6 +48,13 @@ $(T)/%.o: %.S $(ASSETS)
 	@mkdir -p $(@D)
 	$(CC) $(ARCH_FLAGS) -DTARGET_ASSETS='"$(abspath $(ASSETS))"' -c -o $@ $<
 
+# What the laboratory counts there; the emulator loads volume and scenes.
+COUNT_OBJ = $(patsubst %.c,$(T)/%.o,$(wildcard core/*.c) $(TARGET_SRC) \
+	lab/target/count.c)
+
+$(T)/count.elf: $(COUNT_OBJ)
+	$(CC) $(ARCH_FLAGS) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
 # A board's demo, on a cloud that it says how to make.
 DEMO_OBJ = $(patsubst %.c,$(T)/demo/%.o,$(wildcard core/*.c) $(TARGET_SRC) \
 	$(DEMO_SRC)) $(patsubst %.S,$(T)/demo/%.o,$(TARGET_ASSETS_SRC))

@@ -51,6 +51,26 @@ check "a picture that is there gives the row of the frame" \
 "$lab" picture "$dir/f3.pfm" --reference "self=$dir/f3.pfm" >"$dir/self.csv"
 check "no error to itself" grep -q '^0,self,all,0,0,0,inf,0,0,$' "$dir/self.csv"
 
+"$lab" picture "$dir/f3.pfm" --flip --reference "self=$dir/f3.pfm" |
+    sed -n 2p >"$dir/self.csv"
+check "nor FLIP" grep -q ',0$' "$dir/self.csv"
+# shellcheck disable=SC2086
+"$lab" sequence "$volume" $scene --set temporal=ema --frames 0:3 --only 1 \
+    --only 3 --flip --reference "truth=$dir/truth.pfm" >"$dir/only.csv"
+check "rows of the frames that are named" \
+    [ "$(cut -d, -f 1 "$dir/only.csv" | tr '\n' ' ')" = "frame 1 3 " ]
+check "the same but for FLIP" \
+    [ "$(sed 's/,[^,]*$//; s/^3/b,3/' "$dir/only.csv" | tail -n 1)" = \
+    "$(grep '^b,3,truth,all,' "$dir/rows.csv")" ]
+
+## For targets ##
+
+# shellcheck disable=SC2086
+"$lab" pack "$volume" $scene --frames 0:1 >"$dir/record"
+check "a record begins with its name, its size and its frames" \
+    [ "$(od -A n -t u4 -N 12 "$dir/record" | tr -s ' ')" = \
+    " $((0x54464c42)) $(wc -c <"$dir/record") 2" ]
+
 ## Bad input ##
 
 # refuses WORDS ARGUMENT...: status 2, one line with the words, no rows.
@@ -79,6 +99,8 @@ check "a comma in a column" refuses "without commas" sequence "$volume" \
     --column "a=b,c"
 check "frames backwards" refuses "first to the last" sequence "$volume" \
     --frames 3:1
+check "light that is not packed" refuses "not packed" pack "$volume" \
+    --set octaves=2
 
 ## Cells and pages ##
 
@@ -101,6 +123,28 @@ check "an unknown placeholder fails" eval "! page_of '{{moon}}'"
 check "what the text expects" [ -z "$(page_of '{{expect [t x name=a] < 2}}')" ]
 check "and does not get fails" eval \
     "! page_of '{{expect [t x name=a] > 2}}' >/dev/null"
+
+## The front ##
+
+# Six settings of one volume: b is dearer and worse than a, e costs what d does.
+# The knee is where the front is farthest below its chord, at c.
+{
+    echo volume,setting,format,lookup,light,step,noise,temporal,spatial,rays,\
+rmse3,flip3,rmse31,flip31,m4,time
+    for row in a,100,1 b,200,1.5 c,200,0.1 d,1000,0.05 e,1000,0.06 f,9999,0.01
+    do
+        echo "$row" | awk -F, -v OFS=, '{
+            print "v", $1 "-1-2-3-4-5-6-7", $1, 1, 2, 3, 4, 5, 6, 7, $3, $3, \
+                $3, $3, $2, ""
+        }'
+    done
+} >"$dir/all.csv"
+awk -f lab/front/fronts.awk "$dir/all.csv" >"$dir/fronts.csv"
+check "the front, numbered, and its knee" \
+    [ "$(awk -F, '$4 == "rmse31" { printf "%s%s%s ", $2, substr($3, 1, 1), \
+        $8 ? "*" : "" }' "$dir/fronts.csv")" = "1a 2c* 3d 4f " ]
+check "none of a cost that was not measured" \
+    [ "$(grep -c ,time, "$dir/fronts.csv")" = 0 ]
 
 ## Units ##
 
