@@ -28,10 +28,10 @@ lab-deps: ## packages for the laboratory: charts
 	@sh platform/host/deps.sh $(LAB_PACKAGES)
 
 $(BUILD)/brume-lab: $(LAB_OBJ) $(filter-out %/main.o,$(HOST_OBJ)) \
-		$(BUILD)/libbrume.a
+		$(BUILD)/tables/noise/fft.o $(BUILD)/libbrume.a
 	$(CC) $(LDFLAGS) -o $@ $^ -lm -lpthread
 
 $(BUILD)/lab/obj/%.o: lab/%.c
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) -Iplatform/host $(HOST_FLAGS) $(CFLAGS) -MMD -MP \
+	$(CC) $(CPPFLAGS) -Iplatform/host -Itables/noise $(HOST_FLAGS) $(CFLAGS) -MMD -MP \
 		-c -o $@ $<
