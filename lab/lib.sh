@@ -210,3 +210,35 @@ bench()
         print "name=" $1, "render=" $2, rest settings
     }' | "$BUILD/brume-bench" "$3"
 }
+
+# A black picture, for times of frames: rows need something to compare with.
+black()
+{
+    black_at=$lab/references/black$lab_size.pfm
+    once "$black_at" sequence cube cube_scatter --set albedo=0 --mean &&
+        echo "$black_at"
+}
+
+# frame_times VOLUME SCENE RUNS: processor times of whole frames, with history,
+# filters and fewer rays, which brume-bench has not; for units that are marked
+# `timed`. Lines NAME [KEY=VALUE]... on stdin, drawn in turns, each turn the
+# frames 1 to 4 of a sequence, by one thread; the first line is drawn by tuned
+# NanoVDB, too. Rows name,ratio,ratio_least,ratio_most,ms on stdout: `ratio` is
+# NanoVDB's time at the first line's settings over each one's, in the same turn.
+frame_times()
+{
+    times_black=$(black) || return
+    times_lines=$(cat)
+    times_first=$(echo "$times_lines" | sed '1!d; s/^[^ ]*//')
+    for times_turn in $(seq "$3"); do
+        echo "nano nano-tuned $times_first" | bench "$1" "$2" 1 |
+            awk -F, -v OFS=, 'NR == 2 { print "nano", $5 }'
+        echo "$times_lines" | while read -r times_name times_keys; do
+            # shellcheck disable=SC2046,SC2086
+            sequence "$1" "$2" $(sets $times_keys) --frames 0:4 --from 1 \
+                --time --reference "black=$times_black" \
+                --column "name=$times_name" | awk -F, -v OFS=, '
+                NR > 1 { print $1, $NF }'
+        done
+    done | awk -F, -v OFS=, -f lab/times.awk
+}
