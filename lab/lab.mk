@@ -5,7 +5,7 @@
 LAB_PACKAGES = $(PACKAGES) gnuplot-nox librsvg2-bin
 LAB_OBJ = $(patsubst lab/%.c,$(BUILD)/lab/obj/%.o,$(wildcard lab/*.c))
 LAB_PROGRAMS = $(BUILD)/brume-lab $(BUILD)/brume-reference \
-	$(BUILD)/brume-monte-carlo
+	$(BUILD)/brume-monte-carlo $(BUILD)/brume-papers
 LAB_TIMED = $(BUILD)/brume-bench # of the full laboratory: NanoVDB
 LAB_RUN = BUILD=$(BUILD) DATA=$(DATA) JOBS=$(JOBS) sh lab/run.sh
 
@@ -35,3 +35,11 @@ $(BUILD)/lab/obj/%.o: lab/%.c
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) -Iplatform/host -Itables/noise $(HOST_FLAGS) $(CFLAGS) -MMD -MP \
 		-c -o $@ $<
+
+$(BUILD)/brume-papers: $(BUILD)/lab/papers/papers_main.o $(REFERENCE_OBJ)
+	$(CXX) $(LDFLAGS) -o $@ $^ -lpthread
+
+$(BUILD)/lab/papers/%.o: lab/papers/%.cpp
+	@mkdir -p $(@D)
+	$(CXX) $(CPPFLAGS) -Itests/reference -std=c++17 $(WARN) $(CXXFLAGS) \
+		-MMD -MP -c -o $@ $<

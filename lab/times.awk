@@ -36,6 +36,8 @@ $1 == "nano" {
 }
 END {
     end_of_name()
+    if (!nano || !names)
+        exit 1
     print "name", "ratio", "ratio_least", "ratio_most", "ms"
     for (i = 1; i <= names; i++) {
         n = turns[order[i]]
