@@ -173,8 +173,7 @@ fast_check()
         for fast_noise in product separate; do
             claim "fast_blue_${fast_noise}_$fast_volume" \
                 "$(fast_low "$fast_volume" frame $fast_noise)" \< 0.5 \
-                "$fast_volume, $fast_noise: below 1/8 cycle per pixel less
-                 than half of white's power"
+                "$fast_volume, $fast_noise: half of white's low frequencies"
         done
     done
 }

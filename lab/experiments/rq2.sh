@@ -103,25 +103,44 @@ rq2_check_filter()
         "noise of frame 0, $1, $2: FAST below 3/4 of white"
 }
 
-# RMSE by frame, and the noise in it.
+# Two tables of the page, a column a filter: RMSE, and the noise in it.
 rq2_derive()
 {
-    awk -F, -v OFS=, '
+    rq2_wide light >"$out/rq2_table.csv"
+    rq2_wide limit >"$out/rq2_noise.csv"
+}
+
+rq2_wide() # REFERENCE
+{
+    awk -F, -v OFS=, -v reference="$1" '
         NR == 1 {
             for (i = 1; i <= NF; i++)
                 at[$i] = i
-            print "scene", "filter", "noise", "frame 0", "1", "3", "11", \
-                "31", "noise at 0", "noise at 31"
             next
         }
-        $at["frame"] !~ /^(0|1|3|11|31)$/ { next }
+        $at["reference"] != reference || $at["frame"] !~ /^(0|31)$/ { next }
         {
-            # The two references of a frame follow each other.
-            cell[$at["reference"], $at["frame"]] = $at["rmse"]
+            row = $at["scene"] OFS $at["frame"] OFS $at["noise"]
+            if (!(row in seen))
+                order[++rows] = row
+            seen[row]
+            if (!($at["filter"] in column)) {
+                column[$at["filter"]]
+                filters[++n] = $at["filter"]
+            }
+            cell[row, $at["filter"]] = $at["rmse"]
         }
-        $at["frame"] == 31 && $at["reference"] == "limit" {
-            print $1, $2, $3, cell["light", 0], cell["light", 1], \
-                cell["light", 3], cell["light", 11], cell["light", 31], \
-                cell["limit", 0], cell["limit", 31]
-        }' "$out/rq2.csv" >"$out/rq2_table.csv"
+        END {
+            line = "scene" OFS "frame" OFS "noise"
+            for (k = 1; k <= n; k++)
+                line = line OFS filters[k]
+            print line
+            for (i = 1; i <= rows; i++) {
+                line = order[i]
+                for (k = 1; k <= n; k++)
+                    line = line OFS cell[order[i], filters[k]]
+                print line
+            }
+        }' "$out/rq2.csv" | { read -r rq2_head; echo "$rq2_head"
+            sort -s -t, -k 1,1r -k 2,2n; }
 }

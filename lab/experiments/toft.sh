@@ -206,7 +206,11 @@ toft_check()
 
 toft_check_resolution()
 {
-    claim "toft_taa_$1_$2" "$(toft_at "$1" "$2" steps8_taa rmse)" \< \
+    # With fewer rays upsampling has its share, which no noise has: at full
+    # resolution alone it must hold.
+    toft_say=published
+    [ "$2" != full ] || toft_say=claim
+    $toft_say "toft_taa_$1_$2" "$(toft_at "$1" "$2" steps8_taa rmse)" \< \
         "0.5 * $(toft_at "$1" "$2" steps8 rmse)" \
         "$1, $2: 8 steps with jitter and TAA below half of 8 steps' RMSE"
     published "toft_similar_$1_$2" \
