@@ -6,6 +6,7 @@ set grid lc rgb "#dddddd"
 set border 3
 set tics nomirror
 set logscale xy
+set xrange [4:800]
 set xlabel "steps across the box"
 curves = "none/none none/blur white/none bayer/none white/blur bayer/blur " . \
     "bayer/aware"

@@ -12,6 +12,7 @@ colours = "#000000 #2ca02c #d62728 #e377c2 #ff7f0e #17becf #9467bd"
 set terminal svg size 1000,640 font "sans,11" background "white"
 set output dir . "/fast.svg"
 set multiplot layout 2,2
+set autoscale xfix
 set xlabel "frame"
 do for [filter in "box5 gauss1"] {
     do for [average in "ema mean"] {
@@ -30,6 +31,7 @@ unset multiplot
 
 set output dir . "/fast_spectra.svg"
 set multiplot layout 2,2
+set xrange [0:0.5]
 set xlabel "cycles per pixel"
 set yrange [0.01:10]
 kinds = "white stbn product separate rank1"

@@ -5,7 +5,6 @@ set datafile missing NaN # rows of other curves do not break a line
 set grid lc rgb "#dddddd"
 set border 3
 set tics nomirror
-set logscale y
 set xrange [0:31]
 set xlabel "frame"
 csv = dir . "/rq2.csv"
@@ -25,8 +24,10 @@ do for [reference in "light limit"] {
             ": noise alone")
         set key at graph 1, graph 1 right top font ",9" samplen 1.5 maxrows 3
         if (reference eq "light") {
-            set yrange [0.012:0.04]
+            unset logscale y
+            set yrange [0:0.05]
         } else {
+            set logscale y
             set yrange [0.0004:0.05]
         }
         plot for [i=1:words(noises)] csv using (row("disney", filter, \

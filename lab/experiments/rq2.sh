@@ -93,7 +93,8 @@ rq2_check_filter()
         done
     done
     published "rq2_early_$1_$2" \
-        "$(rq2_at "$1" none white 0 light) - $(rq2_at "$1" "$2" white 0 light)" \
+        "$(rq2_at "$1" none white 0 light) -
+            $(rq2_at "$1" "$2" white 0 light)" \
         \> "3 * ($(rq2_at "$1" none white 31 light) -
             $(rq2_at "$1" "$2" white 31 light))" \
         "$1, $2, white: at frame 0 it gains more than 3 times as much as at 31"
