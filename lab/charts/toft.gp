@@ -16,7 +16,7 @@ set logscale xy
 set xlabel "speed: tuned NanoVDB's time at 128 steps over this one's"
 do for [scene in "disney thin cube"] {
     set title scene . ": RMSE at frame 31; full, half, quarter" noenhanced
-    set key bottom left font ",9" samplen 1.5 noenhanced
+    set key top left font ",9" samplen 1.5 noenhanced
     # Columns: scene resolution method frame0 frame31 mean speed
     plot for [i=1:words(methods)] dir . "/toft_table.csv" using \
         (strcol(1) eq scene && strcol(3) eq word(methods, i) ? $7 : NaN):5 \
@@ -39,7 +39,7 @@ do for [scene in "disney thin cube"] {
     # Columns: scene step method frame reference region rmse mean
     plot for [i=1:words(kinds)] dir . "/toft_brightness.csv" using \
         (strcol(1) eq scene && strcol(3) eq word(kinds, i) ? $2 : NaN):8 \
-        with linespoints lw 1.8 dt (i == 3 ? 2 : 1) pt 7 ps 0.4 \
+        with linespoints lw (i == 3 ? 4 : 1.5) pt 7 ps 0.4 \
         lc rgb word(shades, i) title word(kinds, i)
 }
 unset multiplot

@@ -231,8 +231,8 @@ toft_derive()
             for (i = 1; i <= NF; i++)
                 at[$i] = i
             if (++files == 1)
-                print "scene", "resolution", "method", "RMSE, frame 0", \
-                    "RMSE, frame 31", "mean at 31", "speed"
+                print "scene", "resolution", "method", "RMSE at 0", \
+                    "RMSE at 31", "mean at 31", "speed"
             next
         }
         files == 1 { speed[$1, $2, $3] = $at["ratio"]; next }
