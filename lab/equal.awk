@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-# equal.awk TIMES ERRORS: of 8 dithered steps, how many undithered ones have the
-# same RMSE, and how many times as fast they are; experiment 4. Columns:
-# scene noise blur, then `steps`, `worth` (exact, or least: a bound), `speed`.
+# equal.awk -v measure=COLUMN TIMES ERRORS: of 8 dithered steps, how many
+# undithered ones have the same error, and how many times as fast they are;
+# experiment 4. Columns: scene noise blur, the measure, then `steps`, `worth`
+# (exact, or a bound: least, most), `speed`.
 function between(a, b, share) { return exp(log(a) + share * log(b / a)) }
 
 # Sets `equal` and `cost` to what has the error: steps, and their ms if known.
@@ -9,17 +10,17 @@ function find(scene, error,    i, n, share)
 {
     n = counts[scene]
     bound = "exact"
-    for (i = 1; i < n && rmse[scene, i + 1] > error; i++)
+    for (i = 1; i < n && error_of[scene, i + 1] > error; i++)
         ;
-    if (i == n || rmse[scene, 1] < error) {
+    if (i == n || error_of[scene, 1] < error) {
         i = i == n ? n : 1
         bound = i == n ? "least" : "most"
         equal = steps[scene, i]
         cost = ms[scene, "none", "none", equal]
         return
     }
-    share = log(error / rmse[scene, i]) / log(rmse[scene, i + 1] / \
-        rmse[scene, i])
+    share = log(error / error_of[scene, i]) / log(error_of[scene, i + 1] / \
+        error_of[scene, i])
     equal = between(steps[scene, i], steps[scene, i + 1], share)
     cost = 0
     if (ms[scene, "none", "none", steps[scene, i]])
@@ -39,14 +40,14 @@ files == 1 {
 $2 == "none" && $3 == "none" {
     i = ++counts[$1]
     steps[$1, i] = $4
-    rmse[$1, i] = $at["rmse"]
+    error_of[$1, i] = $at[measure]
 }
 $2 != "none" && $4 == 8 {
     rows[++n] = $1 "," $2 "," $3
-    wanted[n] = $at["rmse"]
+    wanted[n] = $at[measure]
 }
 END {
-    print "scene", "noise", "blur", "rmse", "steps", "worth", "speed"
+    print "scene", "noise", "blur", measure, "steps", "worth", "speed"
     for (k = 1; k <= n; k++) {
         split(rows[k], key, ",")
         find(key[1], wanted[k])

@@ -135,17 +135,25 @@ dither_check()
     done
 }
 
+dither_measure()
+{
+    awk -F, -v OFS=, -v measure="$1" -f lab/equal.awk \
+        "$out/dither_time.csv" "$out/dither.csv"
+}
+
 # How many undithered steps have the error of 8 dithered ones, and how much
 # longer these take: between two N linearly in the logarithms. Without a blur
-# on either side, as a blur of what is not noisy only costs. `least` where the
-# most steps that were tried have more error still: the figure is a bound.
+# on either side, as a blur of what is not noisy only costs. A bound, `least` or
+# `most`, where the most steps that were tried have more error, the fewest less.
 dither_derive()
 {
     [ -f "$out/dither_time.csv" ] ||
         echo "scene,noise,blur,steps,ratio,ratio_least,ratio_most,ms" \
             >"$out/dither_time.csv"
-    awk -F, -v OFS=, -f lab/equal.awk "$out/dither_time.csv" \
-        "$out/dither.csv" >"$out/dither_equal.csv"
+    dither_measure rmse >"$out/dither_equal.csv"
+    # Where brume-lab measures it: how visible bands and grain are.
+    ! head -n 1 "$out/dither.csv" | grep -q ',flip' ||
+        dither_measure flip >"$out/dither_equal_flip.csv"
     awk -F, -v OFS=, '
         NR == 1 {
             for (i = 1; i <= NF; i++)
