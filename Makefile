@@ -55,7 +55,8 @@ REFERENCES = reference spec-dump monte-carlo octave-fit
 TEST_PROGRAMS = $(TESTS) $(REFERENCES:%=$(BUILD)/brume-%) \
 	$(BUILD)/tests/hash_scenes $(BUILD)/tests/section_dump \
 	$(BUILD)/tests/make_vdbs $(BUILD)/tests/noise_march \
-	$(BUILD)/brume-stability $(BUILD)/brume-lab $(BUILD)/brume-atlas
+	$(BUILD)/brume-stability $(BUILD)/brume-lab $(BUILD)/brume-atlas \
+	$(BUILD)/brume-papers
 
 .PHONY: all demo test golden targets targets-update targets-deps deps \
 	test-deps install clean help

@@ -7,6 +7,7 @@
  *   sequence.c  frames of a scene, of a path, over time
  *   pack.c      a scene for a target, with the picture that it should draw
  *   measure.c   pictures against a reference, by region: what a row holds
+ *   spectrum.c  the same by frequency
  */
 #ifndef BRUME_LAB_H
 #define BRUME_LAB_H
@@ -47,6 +48,8 @@ struct lab_options {
     const char *path;           /* of keyframes, or NULL */
     const char *picture;        /* where the last frame goes, or NULL */
     const char *mean;           /* where the mean of all frames goes, or NULL */
+    const char *spectrum;       /* .png and .csv of the error, or NULL */
+    uint32_t cycle;             /* the scene's frame number modulo this; or 0 */
     uint32_t first, last, from; /* frames; rows begin at `from` */
     int pixels; /* enum brume_pixel_format of 8 bits; -1: linear light */
     int threads;
@@ -55,6 +58,7 @@ struct lab_options {
     bool flip;               /* adds the column flip */
     uint32_t only[LAB_MOST]; /* rows of these frames alone, if any */
     int only_count;
+    bool cumulative; /* rows are of the mean of the frames so far */
     struct lab_reference references[LAB_MOST];
     struct lab_region regions[LAB_MOST]; /* the first is the whole */
     struct lab_column columns[LAB_MOST];
@@ -85,6 +89,22 @@ struct lab_pair {
 extern const char lab_measure_names[];
 int lab_measure(FILE *to, const struct lab_pair *pair,
                 const struct lab_region *region, char *err, size_t err_size);
+
+/// Spectra (spectrum.c) ///
+
+/* All zero before the first frame. */
+struct lab_spectrum {
+    int x, y, width, height; /* of the picture, in pixels */
+    uint32_t frames;
+    double *power; /* sums over frames; the caller frees it */
+};
+
+/* Adds a frame of float pictures; -1 without memory. */
+int lab_spectrum_add(struct lab_spectrum *s, const struct lab_region *region,
+                     const struct lab_pair *pair);
+/* The exit status. */
+int lab_spectrum_write(const struct lab_spectrum *s,
+                       const struct lab_options *o, char *err, size_t err_size);
 
 /// Rows (picture.c): 0, or the exit status after an error ///
 

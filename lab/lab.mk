@@ -6,7 +6,8 @@ LAB_PACKAGES = $(PACKAGES) gnuplot-nox librsvg2-bin gcc-arm-none-eabi \
 	qemu-system-arm
 LAB_OBJ = $(patsubst lab/%.c,$(BUILD)/lab/obj/%.o,$(wildcard lab/*.c))
 LAB_PROGRAMS = $(BUILD)/brume-lab $(BUILD)/brume-reference \
-	$(BUILD)/brume-monte-carlo $(BUILD)/brume-spec-dump
+	$(BUILD)/brume-monte-carlo $(BUILD)/brume-spec-dump \
+	$(BUILD)/brume-papers $(BUILD)/brume-atlas
 LAB_TIMED = $(BUILD)/brume-bench # of the full laboratory: NanoVDB
 LAB_RUN = BUILD=$(BUILD) DATA=$(DATA) JOBS=$(JOBS) sh lab/run.sh
 
@@ -29,10 +30,18 @@ lab-deps: ## packages for the laboratory: charts
 	@sh platform/host/deps.sh $(LAB_PACKAGES)
 
 $(BUILD)/brume-lab: $(LAB_OBJ) $(filter-out %/main.o,$(HOST_OBJ)) \
-		$(BUILD)/libbrume.a
+		$(BUILD)/tables/noise/fft.o $(BUILD)/libbrume.a
 	$(CC) $(LDFLAGS) -o $@ $^ -lm -lpthread
 
 $(BUILD)/lab/obj/%.o: lab/%.c
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) -Iplatform/host $(HOST_FLAGS) $(CFLAGS) -MMD -MP \
+	$(CC) $(CPPFLAGS) -Iplatform/host -Itables/noise $(HOST_FLAGS) $(CFLAGS) -MMD -MP \
 		-c -o $@ $<
+
+$(BUILD)/brume-papers: $(BUILD)/lab/papers/papers_main.o $(REFERENCE_OBJ)
+	$(CXX) $(LDFLAGS) -o $@ $^ -lpthread
+
+$(BUILD)/lab/papers/%.o: lab/papers/%.cpp
+	@mkdir -p $(@D)
+	$(CXX) $(CPPFLAGS) -Itests/reference -std=c++17 $(WARN) $(CXXFLAGS) \
+		-MMD -MP -c -o $@ $<

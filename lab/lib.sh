@@ -194,6 +194,13 @@ mean_picture()
 
 ## Time ##
 
+# scene_pairs SCENE: its lines as KEY=VALUE... on one.
+scene_pairs()
+{
+    sed 's/#.*//; /^ *$/d; s/ *= */=/; s/ *$//; s/ /,/g' \
+        "lab/scenes/$1.scene" | tr '\n' ' '
+}
+
 # bench VOLUME SCENE RUNS: host times, of units that are marked `timed`. Lines
 # NAME RENDERER [KEY=VALUE]... on stdin, of brume-bench's renderers, drawn in
 # turns; rows of brume-bench on stdout, whose `ratio` is the time of the first
@@ -201,13 +208,57 @@ mean_picture()
 bench()
 {
     bench_volume=$(volume "$1") || return
-    bench_scene=$(sed 's/#.*//; /^ *$/d; s/ *= */=/; s/ *$//; s/ /,/g' \
-        "lab/scenes/$2.scene" | tr '\n' ' ')
-    bench_scene="$bench_scene size=$lab_size output=linear"
+    bench_scene="$(scene_pairs "$2") size=$lab_size output=linear"
     awk -v rest="vdb=$(vdb "$1") asset=$bench_volume $bench_scene" '{
         settings = ""
         for (i = 3; i <= NF; i++)
             settings = settings " " $i
         print "name=" $1, "render=" $2, rest settings
     }' | "$BUILD/brume-bench" "$3"
+}
+
+# march_keys KEY=VALUE...: those that brume-bench knows: a march, alone. Octaves
+# and exposure look up no densities.
+march_keys()
+{
+    for march_pair; do
+        case ${march_pair%%=*} in
+        temporal | window | alpha | subpixel | spatial | edge_falloff | \
+            resolution | octaves | exposure) ;;
+        *) printf '%s ' "$march_pair" ;;
+        esac
+    done
+}
+
+# A black picture, for times of frames: rows need something to compare with.
+black()
+{
+    black_at=$lab/references/black$lab_size.pfm
+    once "$black_at" sequence cube cube_scatter --set albedo=0 --mean &&
+        echo "$black_at"
+}
+
+# frame_times VOLUME SCENE RUNS: processor times of whole frames, with history,
+# filters and fewer rays, which brume-bench has not; for units that are marked
+# `timed`. Lines NAME [KEY=VALUE]... on stdin, drawn in turns, each turn the
+# frames 1 to 4 of a sequence, by one thread; the first line is drawn by tuned
+# NanoVDB, too, without octaves. Rows name,ratio,ratio_least,ratio_most,ms on stdout: `ratio` is
+# NanoVDB's time at the first line's settings over each one's, in the same turn.
+frame_times()
+{
+    times_black=$(black) || return
+    times_lines=$(cat)
+    # shellcheck disable=SC2046
+    times_first=$(march_keys $(echo "$times_lines" | sed '1!d; s/^[^ ]*//'))
+    seq "$3" | while read -r _; do
+        echo "nano nano-tuned $times_first" | bench "$1" "$2" 1 |
+            awk -F, -v OFS=, 'NR == 2 { print "nano", $5 }'
+        echo "$times_lines" | while read -r times_name times_keys; do
+            # shellcheck disable=SC2046,SC2086
+            sequence "$1" "$2" $(sets $times_keys) --frames 0:4 --from 1 \
+                --time --reference "black=$times_black" \
+                --column "name=$times_name" | awk -F, -v OFS=, '
+                NR > 1 { print $1, $NF }'
+        done
+    done | awk -F, -v OFS=, -f lab/times.awk
 }

@@ -42,6 +42,13 @@ static const char k_usage[] =
     "render\n"
     "  --flip            a column flip: the mean of LDR-FLIP\n"
     "  --time            a column ms: processor time of the frame\n"
+    "  --cycle N         frame F is drawn with the noise of frame F modulo N\n"
+    "  --cumulative      rows are of the mean of all frames so far\n"
+    "  --spectrum BASE   also write BASE.png and BASE.csv: power by frequency "
+    "of\n"
+    "                    the error to the first reference, in the middle of "
+    "the\n"
+    "                    last region, over frames from --from on\n"
     "  --mean FILE       also write the mean of all frames (.pfm)\n"
     "  --picture FILE    also write the last frame (.pfm; of a panel .png)\n"
     "  --threads N       1 to 256 (1)\n"
@@ -193,6 +200,8 @@ static int read_count(struct lab_options *o, const char *name,
         return read_number(name, value, 0, UINT32_MAX,
                            &o->only[o->only_count++]);
     }
+    if (strcmp(name, "--cycle") == 0)
+        return read_number(name, value, 1, UINT32_MAX, &o->cycle);
     if (strcmp(name, "--threads") == 0) {
         status = read_number(name, value, 1, POOL_MAX, &n);
         o->threads = (int)n;
@@ -224,6 +233,8 @@ static int read_option(struct lab_options *o, const char *name,
         o->mean = value;
     else if (strcmp(name, "--picture") == 0)
         o->picture = value;
+    else if (strcmp(name, "--spectrum") == 0)
+        o->spectrum = value;
     else
         return read_count(o, name, value);
     return -1;
@@ -234,7 +245,8 @@ static bool takes_value(const char *name)
     static const char *const names[] = {
         "--scene",  "--set",     "--frames", "--reference", "--region",
         "--kernel", "--column",  "--path",   "--mean",      "--picture",
-        "--from",   "--threads", "--pixels", "--only"};
+        "--from",   "--threads", "--pixels", "--only",      "--cycle",
+        "--spectrum"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (strcmp(name, names[i]) == 0)
             return true;
@@ -249,6 +261,10 @@ static int check(const struct lab_options *o)
     if (!o->is_pack && o->reference_count == 0 && o->mean == NULL &&
         o->picture == NULL)
         return usage("no --reference, --mean or --picture given", "");
+    if ((o->cumulative || o->spectrum != NULL) && o->pixels >= 0)
+        return usage("--cumulative and --spectrum are of linear pixels", "");
+    if (o->spectrum != NULL && (o->reference_count == 0 || o->is_picture))
+        return usage("--spectrum is of a sequence with a --reference", "");
     if (o->from > o->last)
         return usage("--from is behind the last frame", "");
     return -1;
@@ -278,6 +294,8 @@ int lab_read_options(struct lab_options *o, int argc, char **argv)
             o->time = true;
         else if (strcmp(argv[i], "--flip") == 0)
             o->flip = true;
+        else if (strcmp(argv[i], "--cumulative") == 0)
+            o->cumulative = true;
         else if (takes_value(argv[i]) && i + 1 < argc)
             status = read_option(o, argv[i], argv[i + 1]), i++;
         else if (takes_value(argv[i]))

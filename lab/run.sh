@@ -57,7 +57,8 @@ if [ -z "${LAB_INPUTS:-}" ]; then
         cat "$BUILD/brume-bake" "$BUILD/brume-cloud" "$BUILD/brume-noise"
         cat "$DATA/wdas_cloud_sixteenth.vdb" "$DATA/openvdb_smoke1.vdb" || :
     } 2>/dev/null | sha256sum)
-    LAB_INPUTS=$(echo "$LAB_MADE" | cat - "$BUILD/brume-lab" | sha256sum)
+    LAB_INPUTS=$(echo "$LAB_MADE" | cat - "$BUILD/brume-lab" \
+        "$BUILD/brume-papers" | sha256sum)
     export LAB_INPUTS LAB_REFERENCE LAB_MADE
 fi
 # shellcheck disable=SC2034

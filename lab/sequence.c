@@ -24,6 +24,7 @@ struct run {
     struct image pictures[2], truths[LAB_MOST][2];
     struct image sum; /* of all frames, for --mean */
     double *sums;
+    struct lab_spectrum spectrum;
     double ms;
     FILE *rows;
     char *err;
@@ -42,7 +43,8 @@ static int scene_of(struct run *r, uint32_t frame, struct brume_scene *scene)
 {
     struct scene_settings settings = r->options->settings;
     settings.set[SCENE_FRAME] = true;
-    settings.value[SCENE_FRAME][0] = frame;
+    settings.value[SCENE_FRAME][0] =
+        r->options->cycle ? frame % r->options->cycle : frame;
     if (r->path != NULL)
         path_apply(r->path, frame, &settings);
     if (scene_apply(&settings, &r->file, scene, &r->light, r->err,
@@ -79,12 +81,12 @@ static int new_pictures(struct run *r, const struct brume_scene *scene)
             return 2;
     r->packed = malloc(brume_row_bytes(r->format, scene->width) *
                        (size_t)scene->height);
-    if (r->options->mean != NULL) {
+    if (r->options->mean != NULL || r->options->cumulative) {
         if (image_new_f32(&r->sum, w, h, channels, r->err, r->err_size) != 0)
             return 2;
         r->sums = calloc(image_samples(&r->sum), sizeof *r->sums);
     }
-    if (r->packed == NULL || (r->options->mean != NULL && r->sums == NULL))
+    if (r->packed == NULL || (r->sum.f32 != NULL && r->sums == NULL))
         return fail(r, "not enough memory");
     return 0;
 }
@@ -93,7 +95,7 @@ static int draw(struct run *r, const struct brume_scene *scene,
                 struct image *to)
 {
     const struct render_target target = {
-        r->format, r->packed, brume_row_bytes(r->format, scene->width)};
+        r->format, r->packed, brume_row_bytes(r->format, scene->width), NULL};
     const uint16_t *wide = r->packed;
     double start = profile_process();
     if (scene->width != to->width || scene->height != to->height)
@@ -111,6 +113,15 @@ static int draw(struct run *r, const struct brume_scene *scene,
     for (size_t i = 0; r->sums != NULL && i < image_samples(to); i++)
         r->sums[i] += to->f32 ? (double)to->f32[i] : to->u8[i] / 255.0;
     return 0;
+}
+
+/* In place of the frame, the mean of all so far. */
+static void accumulate(struct run *r, uint32_t frame)
+{
+    struct image *to = &r->pictures[frame & 1];
+    const double n = (double)(frame - r->options->first) + 1;
+    for (size_t i = 0; i < image_samples(to); i++)
+        to->f32[i] = (float)(r->sums[i] / n);
 }
 
 /* The truth of a frame; one that stays is read once. */
@@ -153,6 +164,19 @@ static bool has_rows(const struct lab_options *o, uint32_t frame)
     return wanted && frame >= o->from;
 }
 
+static int add_spectrum(struct run *r, uint32_t frame)
+{
+    const struct lab_options *o = r->options;
+    const struct lab_pair pair = {&r->pictures[frame & 1],
+                                  &r->truths[0][frame & 1], NULL, NULL, false};
+    if (o->spectrum == NULL || frame < o->from)
+        return 0;
+    if (lab_spectrum_add(&r->spectrum, &o->regions[o->region_count - 1],
+                         &pair) != 0)
+        return fail(r, "not enough memory");
+    return 0;
+}
+
 static int one_frame(struct run *r, uint32_t frame)
 {
     const struct lab_options *o = r->options;
@@ -160,6 +184,8 @@ static int one_frame(struct run *r, uint32_t frame)
     int status = scene_of(r, frame, &scene);
     if (status == 0)
         status = draw(r, &scene, &r->pictures[frame & 1]);
+    if (status == 0 && o->cumulative)
+        accumulate(r, frame);
     for (int i = 0; status == 0 && i < o->reference_count; i++) {
         status = read_truth(r, i, frame);
         if (!has_rows(o, frame))
@@ -167,6 +193,8 @@ static int one_frame(struct run *r, uint32_t frame)
         for (int k = 0; status == 0 && k < o->region_count; k++)
             status = print_row(r, frame, i, k);
     }
+    if (status == 0)
+        status = add_spectrum(r, frame);
     return status;
 }
 
@@ -178,6 +206,9 @@ static int write_pictures(struct run *r)
     const double n = (double)(o->last - o->first) + 1;
     if (o->picture != NULL && image_write(o->picture, &r->pictures[o->last & 1],
                                           r->err, r->err_size) != 0)
+        return 1;
+    if (o->spectrum != NULL &&
+        lab_spectrum_write(&r->spectrum, o, r->err, r->err_size) != 0)
         return 1;
     if (o->mean == NULL)
         return 0;
@@ -224,6 +255,7 @@ static void clear(struct run *r)
     }
     image_free(&r->sum);
     free(r->sums);
+    free(r->spectrum.power);
     free(r->packed);
 }
 

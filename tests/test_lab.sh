@@ -70,6 +70,63 @@ check "the same but for FLIP" \
 check "a record begins with its name, its size and its frames" \
     [ "$(od -A n -t u4 -N 12 "$dir/record" | tr -s ' ')" = \
     " $((0x54464c42)) $(wc -c <"$dir/record") 2" ]
+## Frames over time ##
+
+# shellcheck disable=SC2086
+draw() { "$lab" sequence "$volume" $scene "$@"; }
+draw --frames 0:3 --cumulative --picture "$dir/so_far.pfm" \
+    --mean "$dir/mean.pfm" && draw --frames 0:5 --cycle 3 --picture \
+    "$dir/cycle.pfm" && draw --frames 2:2 --picture "$dir/two.pfm"
+check "the mean so far is the mean at the end" \
+    cmp "$dir/so_far.pfm" "$dir/mean.pfm"
+check "of a cycle of 3, frame 5 is frame 2" cmp "$dir/cycle.pfm" "$dir/two.pfm"
+draw --frames 2:2 --reference "self=$dir/two.pfm" --spectrum "$dir/zero" \
+    >/dev/null
+draw --frames 0:1 --reference "truth=$dir/truth.pfm" --column a=b \
+    --spectrum "$dir/some" >/dev/null
+check "no power where nothing is wrong" [ \
+    "$(sed 1d "$dir/zero.csv" | cut -d, -f 2 | sort -u)" = 0 ]
+check "16 bands of it" [ "$(grep -c '^b,0' "$dir/some.csv")" = 16 ]
+check "and a picture" [ -s "$dir/some.png" ]
+
+## What papers do ##
+
+"$BUILD/brume-bake" "$dir/block.vdb" -o "$dir/again.brume" \
+    --dump-float "$dir/voxels.float" >/dev/null
+view="--set size=40x30 --set fov=40 --set eye=60,20,60 --set target=0,0,0
+    --set step=1 --set sun=60,30
+    --set density_scale=0.2 --set light_density_scale=0.2 --set background=0
+    --set light=log --set light_samples=4 --set light_step=1
+    --set jitter=none --set filter=trilinear --set min_density=0
+    --set min_transmittance=0.01"
+# double PROGRAM OUT [OPTION]...
+double()
+{
+    double_out=$dir/$2.pfm
+    double_program=$BUILD/brume-$1
+    shift 2
+    # shellcheck disable=SC2086
+    "$double_program" "$dir/voxels.float" $view "$@" -o "$double_out"
+}
+# More or less light, or lookups of a kind, than `plain`.
+mean_of() { "$lab" picture "$dir/$1.pfm" --reference "a=$dir/plain.pfm" |
+    awk -F, 'NR == 2 { print $5 }'; }
+more() { awk "BEGIN { exit !($1 > $2) }"; }
+count() { sed -n "s/^$1=//p" "$dir/$2.txt"; }
+double reference exact >/dev/null
+for way in plain euler all-lit adaptive; do
+    option=--$way
+    [ $way != plain ] || option=
+    # shellcheck disable=SC2086
+    double papers $way $option >"$dir/$way.txt"
+done
+check "brume-papers is brume-reference" cmp "$dir/exact.pfm" "$dir/plain.pfm"
+check "Euler's steps are brighter" more "$(mean_of euler)" 0
+check "light for what is empty changes nothing" \
+    cmp "$dir/all-lit.pfm" "$dir/plain.pfm"
+check "and costs" more "$(count light all-lit)" "$(count light plain)"
+check "steps that adapt look up less" \
+    more "$(count view plain)" "$(count view adaptive)"
 
 ## Bad input ##
 
