@@ -15,6 +15,9 @@ struct gathered {
 #if BRUME_WITH_AMBIENT
     uint32_t sky[6]; /* B_j */
 #endif
+#if BRUME_WITH_EMISSION
+    uint32_t glow[3]; /* E_c, Q6.26, <= 16 */
+#endif
     uint32_t moved[3]; /* Q16.16, 0 .. 1: of stochastic lookups */
     uint32_t lit;      /* samples */
 };

@@ -50,6 +50,7 @@ static bool is_missing(const struct brume_scene *s)
     return (!BRUME_WITH_COLOUR && brume_scene_has_colour(s)) ||
            (!BRUME_WITH_AMBIENT && l->ambient != BRUME_AMBIENT_NONE) ||
            (!BRUME_WITH_SKY && (l->sky || l->haze != 0)) ||
+           (!BRUME_WITH_EMISSION && l->emission_colour != NULL) ||
            (!BRUME_WITH_DITHER && l->dither);
 }
 
@@ -72,6 +73,8 @@ int brume_lit_check(const struct brume_scene *scene)
         (l->exposure != 0 &&
          (l->exposure < 0x100u || l->exposure > 16u << 16)) ||
         !colours_are_good(&l->sun_colour, 1) || !ambient_is_good(l) ||
+        (l->emission_colour != NULL &&
+         !colours_are_good(l->emission_colour, 256)) ||
         !sky_is_good(l) || (l->haze != 0 && l->haze < 0x10000u))
         return BRUME_ERR_SCENE;
     return is_missing(scene) ? BRUME_ERR_FEATURE : BRUME_OK;
@@ -237,6 +240,12 @@ int brume_lit_begin(struct brume_frame *frame, const struct brume_scene *scene)
 #if BRUME_WITH_DITHER
     f->lit.dither = l->dither;
 #endif
+#if BRUME_WITH_EMISSION
+    f->lit.emits = l->emission_colour != NULL && l->emission_scale != 0;
+    f->lit.exposure = l->exposure != 0 ? l->exposure : 0x10000u;
+    if (l->emission_colour != NULL && f->volume->emission == NULL)
+        return BRUME_ERR_SECTION;
+#endif
 #if BRUME_WITH_AMBIENT
     f->lit.ambient = l->ambient;
     if (l->ambient != BRUME_AMBIENT_NONE)
@@ -264,6 +273,16 @@ uint32_t brume_lit_sameness(const struct brume_frame *frame)
     for (int j = 0; j < 6; j++)
         for (int c = 0; c < 3; c++)
             h = h * 16777619u ^ l->ambient_colour[j][c];
+#endif
+#if BRUME_WITH_EMISSION
+    for (uint32_t i = 0; l->emits && i < 256; i++) {
+        const uint32_t *colour = l->lighting->emission_colour[i];
+        h = h * 16777619u ^ l->emission[i];
+        h = h * 16777619u ^ l->emission[256 + i];
+        for (int c = 0; c < 3; c++)
+            h = h * 16777619u ^ colour[c];
+    }
+    h = h * 16777619u ^ (l->emits ? l->exposure : 0);
 #endif
     return h;
 }

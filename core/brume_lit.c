@@ -6,6 +6,7 @@
  * a build has one format and one lookup, that branch is gone.
  */
 #include "brume_ambient.h"
+#include "brume_emission.h"
 #include "brume_sun.h"
 
 #if BRUME_WITH_LIGHTING
@@ -142,6 +143,10 @@ static uint32_t channel_of(const struct brume_frame *f,
 #else
     (void)g;
 #endif
+#if BRUME_WITH_EMISSION
+    if (f->lit.emits) /* Q6.26: three bits less than scaled() takes */
+        light += scaled(g->glow[c], f->lit.exposure << 3);
+#endif
     return light < BRUME_MAX_LIGHT ? light : BRUME_MAX_LIGHT;
 }
 
@@ -242,12 +247,20 @@ void brume_lit_march(const struct brume_frame *frame,
 #endif
         if (!find_density(f, p[0], p[1], p[2], &d, k)) {
             m = leap(f, line, p[0], p[1], p[2], d, k);
-        } else if (d > f->min_density) {
-            BRUME_TALLY(lit_samples, 1);
-            uint32_t lost =
-                mul_hi_floor(transmittance, opacity(f, d, is_narrow_frame(f)));
-            uint32_t sum = sun_sum(f, &ray->light, p, d, &reach, &k);
-            add_light(f, &g, ray, p, lost, sum, &k);
+        } else {
+            bool dense = d > f->min_density;
+            uint32_t fade = dense ? opacity(f, d, is_narrow_frame(f)) : 0;
+            uint32_t glowing = 0;
+#if BRUME_WITH_EMISSION
+            glowing = glow_of(f, &g, p, transmittance, &fade);
+#endif
+            uint32_t lost = mul_hi_floor(transmittance, fade);
+            if (dense) {
+                BRUME_TALLY(lit_samples, 1);
+                uint32_t sum = sun_sum(f, &ray->light, p, d, &reach, &k);
+                add_light(f, &g, ray, p, lost, sum, &k);
+            }
+            lost += glowing;
             transmittance -= lost;
 #if BRUME_WITH_DEPTH
             where += moment(lost, ray->count - left);

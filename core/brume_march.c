@@ -181,19 +181,26 @@ static struct brume_number times(struct brume_number a, uint32_t i)
     return brume_number_mul(a, brume_number_of(i, 0));
 }
 
+/* Two halves of transmittance. unit: extinction over a step, per 16-bit
+ * code. */
+static void fill_halves(uint32_t table[512], struct brume_number unit)
+{
+    for (uint32_t i = 0; i < 256; i++) {
+        table[i] = ~brume_one_minus_exp(times(unit, i << 8));
+        table[256 + i] = ~brume_one_minus_exp(times(unit, i));
+    }
+}
+
 /* unit: extinction over a step, per code. */
 static void fill_table(struct brume_frame *f, struct brume_number unit,
                        bool narrow)
 {
-    for (uint32_t i = 0; i < 256; i++) {
-        uint32_t fine = brume_one_minus_exp(times(unit, i));
-        if (narrow) {
-            f->table[i] = fine;
-            continue;
-        }
-        f->table[i] = ~brume_one_minus_exp(times(unit, i << 8));
-        f->table[256 + i] = ~fine;
+    if (!narrow) {
+        fill_halves(f->table, unit);
+        return;
     }
+    for (uint32_t i = 0; i < 256; i++)
+        f->table[i] = brume_one_minus_exp(times(unit, i));
 }
 
 static bool tau_fits(const struct brume_tau *t, uint32_t sum)
@@ -296,6 +303,21 @@ static void set_lit_taus(struct brume_frame *f, const struct brume_scene *s,
 }
 #endif
 
+#if BRUME_WITH_EMISSION
+/* Values of the second grid count in 1/256 of its codes of 8 bits. */
+static void set_emission(struct brume_frame *f, const struct brume_scene *s)
+{
+    if (!f->lit.emits)
+        return;
+    struct brume_number unit =
+        brume_number_mul(f->volume->emission_max, per_code(false));
+    unit = brume_number_mul(unit, brume_number_of(s->step, -16));
+    fill_halves(
+        f->lit.emission,
+        brume_number_mul(unit, brume_number_q32(s->lighting->emission_scale)));
+}
+#endif
+
 int brume_march_begin(struct brume_frame *frame,
                       const struct brume_scene *scene)
 {
@@ -339,6 +361,9 @@ int brume_march_begin(struct brume_frame *frame,
     set_tau(&f->tau, brume_number_mul(unit, light_step));
 #if BRUME_WITH_LIGHTING
     set_lit_taus(f, scene, unit);
+#endif
+#if BRUME_WITH_EMISSION
+    set_emission(f, scene);
 #endif
     set_light(f, scene);
     return BRUME_OK;
