@@ -21,6 +21,7 @@ struct entry {
     unsigned line;
     double value[SCENE_VALUES];
     const struct brume_noise_table *noise_file;
+    const struct emission_file *emission_file;
 };
 
 struct path {
@@ -169,6 +170,7 @@ static int read_key(struct reader *r, const char *text)
         return -1;
     memcpy(e->value, set.value[key], sizeof e->value);
     e->noise_file = set.noise_file;
+    e->emission_file = set.emission_file;
     return 0;
 }
 
@@ -333,6 +335,8 @@ static void set_key(const struct path *path, int key, uint32_t frame,
     memcpy(settings->value[key], all[i].value, sizeof all[i].value);
     if (key == SCENE_NOISE)
         settings->noise_file = all[i].noise_file;
+    if (key == SCENE_EMISSION)
+        settings->emission_file = all[i].emission_file;
     for (int c = 0; moves && c < 3; c++) {
         double u = ((double)frame - all[i].frame) /
                    ((double)all[i + 1].frame - all[i].frame);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "noises.h"
+#include "scene_emission.h"
 #include "scene_keys.h"
 
 /// Lines ///
@@ -95,7 +96,13 @@ int scene_set(struct scene_settings *settings, const char *text,
         if (i == SCENE_NOISE &&
             read_noise(settings, value, where, err, err_size) != 0)
             return -1;
-        if ((i != SCENE_NOISE || settings->noise_file == NULL) &&
+        if (i == SCENE_EMISSION &&
+            scene_emission_read(value, settings->value[i],
+                                &settings->emission_file, where, err,
+                                err_size) != 0)
+            return -1;
+        if (i != SCENE_EMISSION &&
+            (i != SCENE_NOISE || settings->noise_file == NULL) &&
             scene_read_value(i, value, settings->value[i], where, err,
                              err_size) != 0)
             return -1;

@@ -11,7 +11,8 @@
 
 #include "volume_file.h"
 
-struct scene_light; /* scene_light.h */
+struct scene_light;   /* scene_light.h */
+struct emission_file; /* scene_emission.h */
 
 enum scene_key {
     SCENE_SIZE,
@@ -80,6 +81,8 @@ enum scene_key {
     SCENE_SUN_SIZE,
     SCENE_HAZE,
     SCENE_DITHER,
+    SCENE_EMISSION,
+    SCENE_EMISSION_SCALE,
     SCENE_KEYS
 };
 
@@ -92,6 +95,7 @@ struct scene_settings {
     bool set[SCENE_KEYS];
     double value[SCENE_KEYS][SCENE_VALUES];
     const struct brume_noise_table *noise_file; /* or NULL */
+    const struct emission_file *emission_file;  /* the same */
     char where[SCENE_KEYS][SCENE_WHERE_SIZE];   /* file:line, cut to fit */
 };
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "noises.h"
+#include "scene_emission.h"
 #include "scene_phase.h"
 
 #define FAR 1e9 /* world coordinates; the pool's own limit comes later */
@@ -131,6 +132,12 @@ const struct scene_key_info scene_keys[SCENE_KEYS] = {
      "voxels in which the volume fades to 1/e; 0: never (0)"},
     {"dither", SCENE_IS_WORD, 0, 0, "off on",
      "of pixels with few bits, see --pixels (off)"},
+    {"emission", SCENE_IS_EMISSION, 0, 0, scene_emission_words,
+     "colours of codes 0 to 255 of the volume's second grid; FILE: 256 lines r "
+     "g b (none)"},
+    {"emission_scale", SCENE_IS_NUMBER, 0, MAX_Q32, NULL,
+     "extinction per voxel per unit of it (16 across the box at 1/4 of its "
+     "largest value)"},
 };
 
 void scene_print_keys(FILE *to)
@@ -214,7 +221,8 @@ void scene_print_number(FILE *to, double value)
 bool scene_key_moves(int key)
 {
     return scene_keys[key].kind != SCENE_IS_WORD &&
-           scene_keys[key].kind != SCENE_IS_PHASE;
+           scene_keys[key].kind != SCENE_IS_PHASE &&
+           scene_keys[key].kind != SCENE_IS_EMISSION;
 }
 
 static const char *wanted(enum scene_kind kind)

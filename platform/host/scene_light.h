@@ -18,6 +18,8 @@ struct scene_light {
     struct brume_lighting lighting;
     struct brume_phase phase[BRUME_MAX_OCTAVES];
     struct brume_cache cache; /* of light = cache: see sun_cache.h */
+    uint32_t emission[256][3];
+    const struct emission_file *emission_file; /* or NULL */
     /* of the keys from SCENE_LIGHT_FIRST on, said or by default */
     double value[SCENE_LIGHT_KEYS][SCENE_VALUES];
 };
