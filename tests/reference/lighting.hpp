@@ -5,6 +5,7 @@
 #define BRUME_REFERENCE_LIGHTING_HPP
 
 #include <array>
+#include <vector>
 
 #include "phase.hpp"
 #include "vec3.hpp"
@@ -25,6 +26,8 @@ struct cone_rule {
     int pairs = 2;      // so many doublings have two
 };
 
+using emission_colours = std::vector<vec3>; // of codes 0 .. 255, or none
+
 struct lighting {
     phase_model phase;
     int octaves;
@@ -42,6 +45,9 @@ struct lighting {
     int sky_directions = 256; // over which sampled visibility is averaged
 
     cone_rule cone;
+
+    emission_colours glow;
+    double emission_scale; // extinction per voxel at a value of 1
 
     bool sky;
     vec3 sky_zenith, sky_horizon, sky_ground, sun_disc;

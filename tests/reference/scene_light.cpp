@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "emission.hpp"
 #include "scene_values.hpp"
 
 namespace reference
@@ -160,6 +161,13 @@ const std::vector<scene_key> &light_keys()
          [](scene &s, text v) {
              s.lit.output = static_cast<output_curve>(
                  parse_word(v, {"linear", "srgb", "filmic"}));
+         }},
+        {"emission", "none", no,
+         "none | blackbody:LOW,HIGH,BRIGHTNESS | FILE of 256 colours",
+         [](scene &s, text v) { s.lit.glow = read_emission(v); }},
+        {"emission_scale", "1", no, "extinction per voxel at a value of 1",
+         [](scene &s, text v) {
+             s.lit.emission_scale = parse_in(v, 0, infinity);
          }},
         {"dither", nullptr, no, "ignored: values are not quantised",
          [](scene &, text v) { parse_switch(v); }},
