@@ -112,10 +112,8 @@ class baker
         if (two)
             glow_src_ = read_source(o_.input, o_.emission, false,
                                     grid_need::nothing, bar_);
-        if (src_.missing && (!two || glow_src_.missing))
-            throw failure("has neither a grid \"" + src_.name +
-                              "\" nor a grid \"" + o_.emission + "\"",
-                          status_usage);
+        if (src_.missing && (!two || glow_src_.missing)) // for its message
+            read_source(o_.input, grid, o_.fog, grid_need::voxels, bar_);
         for (const source *s : {&src_, &glow_src_})
             if (s->missing)
                 notice("has no grid \"" + s->name + "\": it is 0 everywhere");
