@@ -3,7 +3,7 @@
 
 #if TEST_LIGHTING
 
-#define SLOTS 24
+#define SLOTS 32
 #define ONE 0x10000u
 
 /* A few directions of the upper hemisphere, Q1.7. */
@@ -59,6 +59,18 @@ static void set_colours(struct brume_lighting *l, bool colour)
     }
 }
 
+/* From red to blue by code, or all alike. */
+static void set_emission(struct brume_lighting *l, bool colour)
+{
+    static uint32_t s_colours[2][256][3];
+    for (uint32_t i = 0; i < 256; i++)
+        for (uint32_t c = 0; c < 3; c++)
+            s_colours[colour][i][c] =
+                i * ONE / (colour ? 64u + 96u * (c ^ 1u) : 100u);
+    l->emission_colour = (const uint32_t(*)[3])s_colours[colour];
+    l->emission_scale = BRUME_Q32(0.5);
+}
+
 void test_lighting_fill(struct brume_scene *out,
                         const struct test_lighting *light, unsigned slot,
                         const struct brume_volume *volume)
@@ -87,6 +99,8 @@ void test_lighting_fill(struct brume_scene *out,
     l->exposure = light->filmic ? ONE / 2 : 0;
     if (light->filmic)
         out->output = BRUME_FILMIC;
+    if (light->emission)
+        set_emission(l, light->colour);
 #if BRUME_WITH_CACHE
     if (out->light == BRUME_CACHE &&
         brume_cache_baked(&s_cache[slot], volume) == BRUME_OK) {

@@ -14,6 +14,7 @@ struct test_lighting {
     uint8_t ambient, visibility;
     bool colour, sky, filmic;
     uint8_t blend; /* of the cache with itself, 1/256 */
+    bool emission; /* colours of the second grid; grey without `colour` */
 };
 
 /* Is there lighting at all in this build, and memory for it? */
@@ -24,7 +25,7 @@ struct test_lighting {
 #define TEST_LIGHTING 0
 #endif
 
-/* Points a scene at that lighting, which lives on, number `slot` < 24 of its
+/* Points a scene at that lighting, which lives on, number `slot` < 32 of its
  * kind: a slot always holds the same. `volume` may have a cache. */
 void test_lighting_fill(struct brume_scene *out,
                         const struct test_lighting *light, unsigned slot,
