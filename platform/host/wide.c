@@ -75,8 +75,7 @@ bool wide_by_name(const char *name, enum wide_kernel *kernel)
     return false;
 }
 
-/* The lanes know no emission: such frames are the scalar march's. */
-static bool wide_can_march(const struct brume_frame *frame)
+bool wide_can_march(const struct brume_frame *frame)
 {
     return !frame->lit.emits;
 }
@@ -86,8 +85,9 @@ int wide_march_copy_rect(enum wide_kernel kernel, const struct wide_copy *copy,
                          unsigned y, unsigned w, unsigned h,
                          struct brume_radiance *out, size_t stride)
 {
-    wide_march *march =
-        wide_has(kernel) && wide_can_march(frame) ? march_of(kernel) : NULL;
+    wide_march *march = wide_has(kernel) ? march_of(kernel) : NULL;
+    if (frame != NULL && !wide_can_march(frame))
+        march = NULL;
     /* The scalar one checks a rectangle, too: an empty one of this place. */
     int error = brume_march_rect(frame, x, y, w, march ? 0 : h, out, stride);
     if (error != BRUME_OK || march == NULL)
