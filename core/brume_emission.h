@@ -10,6 +10,12 @@
 
 #if BRUME_WITH_EMISSION
 
+/* Does the second grid play a part? */
+static inline bool emits(const struct brume_frame *f)
+{
+    return f->lit.emits;
+}
+
 /* Code of the voxel at a position, 0 in an empty cell. Bricks of EMIT have no
  * apron, whatever those of the pool have. */
 static inline uint32_t emission_code(const struct brume_volume *v, uint32_t x,
@@ -74,7 +80,7 @@ static inline uint32_t glow_of(const struct brume_frame *f, struct gathered *g,
                                const uint32_t p[3], uint32_t transmittance,
                                uint32_t *fade)
 {
-    if (!f->lit.emits)
+    if (!emits(f))
         return 0;
     uint32_t m = emission_at(f, g, p);
     uint32_t glow = ~mul_hi_floor(f->lit.emission[m >> 8],
@@ -88,6 +94,22 @@ static inline uint32_t glow_of(const struct brume_frame *f, struct gathered *g,
     uint32_t glowing = mul_hi_floor(transmittance, glow - both);
     add_glow(f, g, m, glowing);
     return glowing;
+}
+
+#elif BRUME_WITH_LIGHTING
+
+static inline bool emits(const struct brume_frame *f)
+{
+    (void)f;
+    return false;
+}
+
+static inline uint32_t glow_of(const struct brume_frame *f, struct gathered *g,
+                               const uint32_t p[3], uint32_t transmittance,
+                               uint32_t *fade)
+{
+    (void)f, (void)g, (void)p, (void)transmittance, (void)fade;
+    return 0;
 }
 
 #endif

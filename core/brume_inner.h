@@ -289,7 +289,9 @@ BRUME_INLINE bool brume_scene_has_colour(const struct brume_scene *s)
     bool grey = brume_is_grey(l->sun_colour);
     for (uint32_t j = 0; j < brume_ambient_colours(l->ambient); j++)
         grey = grey && brume_is_grey(l->ambient_colour[j]);
-    for (uint32_t i = 0; l->emission_colour != NULL && grey && i < 256; i++)
+    for (uint32_t i = 0;
+         BRUME_WITH_EMISSION && l->emission_colour != NULL && grey && i < 256;
+         i++)
         grey = brume_is_grey(l->emission_colour[i]);
     return !grey;
 }

@@ -73,7 +73,7 @@ int brume_lit_check(const struct brume_scene *scene)
         (l->exposure != 0 &&
          (l->exposure < 0x100u || l->exposure > 16u << 16)) ||
         !colours_are_good(&l->sun_colour, 1) || !ambient_is_good(l) ||
-        (l->emission_colour != NULL &&
+        (BRUME_WITH_EMISSION && l->emission_colour != NULL &&
          !colours_are_good(l->emission_colour, 256)) ||
         !sky_is_good(l) || (l->haze != 0 && l->haze < 0x10000u))
         return BRUME_ERR_SCENE;

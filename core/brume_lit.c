@@ -247,13 +247,10 @@ void brume_lit_march(const struct brume_frame *frame,
 #endif
         if (!find_density(f, p[0], p[1], p[2], &d, k)) {
             m = leap(f, line, p[0], p[1], p[2], d, k);
-        } else {
+        } else if (d > f->min_density || emits(f)) {
             bool dense = d > f->min_density;
             uint32_t fade = dense ? opacity(f, d, is_narrow_frame(f)) : 0;
-            uint32_t glowing = 0;
-#if BRUME_WITH_EMISSION
-            glowing = glow_of(f, &g, p, transmittance, &fade);
-#endif
+            uint32_t glowing = glow_of(f, &g, p, transmittance, &fade);
             uint32_t lost = mul_hi_floor(transmittance, fade);
             if (dense) {
                 BRUME_TALLY(lit_samples, 1);

@@ -181,26 +181,19 @@ static struct brume_number times(struct brume_number a, uint32_t i)
     return brume_number_mul(a, brume_number_of(i, 0));
 }
 
-/* Two halves of transmittance. unit: extinction over a step, per 16-bit
- * code. */
-static void fill_halves(uint32_t table[512], struct brume_number unit)
-{
-    for (uint32_t i = 0; i < 256; i++) {
-        table[i] = ~brume_one_minus_exp(times(unit, i << 8));
-        table[256 + i] = ~brume_one_minus_exp(times(unit, i));
-    }
-}
-
 /* unit: extinction over a step, per code. */
-static void fill_table(struct brume_frame *f, struct brume_number unit,
+static void fill_table(uint32_t table[512], struct brume_number unit,
                        bool narrow)
 {
-    if (!narrow) {
-        fill_halves(f->table, unit);
-        return;
+    for (uint32_t i = 0; i < 256; i++) {
+        uint32_t fine = brume_one_minus_exp(times(unit, i));
+        if (narrow) {
+            table[i] = fine;
+            continue;
+        }
+        table[i] = ~brume_one_minus_exp(times(unit, i << 8));
+        table[256 + i] = ~fine;
     }
-    for (uint32_t i = 0; i < 256; i++)
-        f->table[i] = brume_one_minus_exp(times(unit, i));
 }
 
 static bool tau_fits(const struct brume_tau *t, uint32_t sum)
@@ -312,9 +305,9 @@ static void set_emission(struct brume_frame *f, const struct brume_scene *s)
     struct brume_number unit =
         brume_number_mul(f->volume->emission_max, per_code(false));
     unit = brume_number_mul(unit, brume_number_of(s->step, -16));
-    fill_halves(
-        f->lit.emission,
-        brume_number_mul(unit, brume_number_q32(s->lighting->emission_scale)));
+    unit =
+        brume_number_mul(unit, brume_number_q32(s->lighting->emission_scale));
+    fill_table(f->lit.emission, unit, false);
 }
 #endif
 
@@ -357,7 +350,7 @@ int brume_march_begin(struct brume_frame *frame,
     step = brume_number_mul(step, brume_number_q32(scene->density_scale));
     light_step = brume_number_mul(light_step,
                                   brume_number_q32(scene->light_density_scale));
-    fill_table(f, brume_number_mul(unit, step), narrow);
+    fill_table(f->table, brume_number_mul(unit, step), narrow);
     set_tau(&f->tau, brume_number_mul(unit, light_step));
 #if BRUME_WITH_LIGHTING
     set_lit_taus(f, scene, unit);
