@@ -151,7 +151,8 @@ extern "C" {
 #ifndef BRUME_WITH_SURFACE /* rays end at a depth buffer; the sun's map */
 #define BRUME_WITH_SURFACE BRUME_WITH_LIGHTING
 #endif
-#ifndef BRUME_WITH_EMISSION /* fire: the asset's second grid */
+/* fire: the asset's second grid; 3.2 KiB, and 2 of struct brume_frame */
+#ifndef BRUME_WITH_EMISSION
 #define BRUME_WITH_EMISSION BRUME_WITH_LIGHTING
 #endif
 #ifndef BRUME_WITH_DITHER /* pixels of few bits; needs noise; 0.5 KiB */
