@@ -214,7 +214,8 @@ void run(const options &o)
     picture image = renderer(v, s, glow.get()).render(area, threads);
     if (o.step_check) {
         s.step /= 2;
-        print_step_check(image, renderer(v, s, glow.get()).render(area, threads));
+        print_step_check(image,
+                         renderer(v, s, glow.get()).render(area, threads));
     }
     if (o.display || o.bits != 0)
         for (double &value : image.values)
