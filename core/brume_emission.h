@@ -75,13 +75,15 @@ static inline void add_glow(const struct brume_frame *f, struct gathered *g,
 /* What the sample at p glows: returns the loss, Q1.31, and makes *fade, its
  * 1 - a in Q0.32, the share (1 - a)(1 + b) / 2 of what scatters. The two never
  * take more than there is: with half of the product rounded up, fade + glow is
- * at most 1 - a b. */
-static inline uint32_t glow_of(const struct brume_frame *f, struct gathered *g,
-                               const uint32_t p[3], uint32_t transmittance,
-                               uint32_t *fade)
+ * at most 1 - a b. Not inlined: it costs the march of other scenes registers.
+ */
+#if defined(__GNUC__)
+__attribute__((noinline))
+#endif
+static uint32_t
+glow_of(const struct brume_frame *f, struct gathered *g, const uint32_t p[3],
+        uint32_t transmittance, uint32_t *fade)
 {
-    if (!emits(f))
-        return 0;
     uint32_t m = emission_at(f, g, p);
     uint32_t glow = ~mul_hi_floor(f->lit.emission[m >> 8],
                                   f->lit.emission[256u + (m & 255u)]);

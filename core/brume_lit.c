@@ -250,7 +250,12 @@ void brume_lit_march(const struct brume_frame *frame,
         } else if (d > f->min_density || emits(f)) {
             bool dense = d > f->min_density;
             uint32_t fade = dense ? opacity(f, d, is_narrow_frame(f)) : 0;
-            uint32_t glowing = glow_of(f, &g, p, transmittance, &fade);
+            uint32_t glowing = 0;
+            if (emits(f)) {
+                uint32_t share = fade; /* fade stays in a register */
+                glowing = glow_of(f, &g, p, transmittance, &share);
+                fade = share;
+            }
             uint32_t lost = mul_hi_floor(transmittance, fade);
             if (dense) {
                 BRUME_TALLY(lit_samples, 1);
