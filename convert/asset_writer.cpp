@@ -107,7 +107,7 @@ std::vector<section> place(const asset_size &size)
     std::vector<section> list = {{BRUME_SECTION_CELL, 0, size.cell},
                                  {BRUME_SECTION_POOL, 0, size.pool}};
 
-    if (size.range > 0)
+    if (size.has_ranges)
         list.push_back({BRUME_SECTION_RNGE, 0, size.range});
     if (size.name > 0)
         list.push_back({BRUME_SECTION_NAME, 0, size.name});
@@ -117,6 +117,8 @@ std::vector<section> place(const asset_size &size)
         list.push_back({BRUME_SECTION_SUNC, 0, size.light.sun});
     if (size.light.sky > 0)
         list.push_back({BRUME_SECTION_AMBI, 0, size.light.sky});
+    if (size.emission > 0)
+        list.push_back({BRUME_SECTION_EMIT, 0, size.emission});
     uint64_t end = BRUME_HEADER_BYTES + list.size() * BRUME_SECTION_BYTES;
     for (section &s : list) {
         s.offset = align(end);
@@ -128,6 +130,8 @@ std::vector<section> place(const asset_size &size)
 // Files without sections that came later say so, and stay as they were.
 uint32_t minor_version(const asset_contents &c)
 {
+    if (c.p.glows)
+        return 2;
     return c.light.sizes().total() > 0 ? 1 : 0;
 }
 
@@ -141,8 +145,9 @@ std::vector<uint8_t> make_header(const asset_contents &c,
                            list.size() * BRUME_SECTION_BYTES);
     const int32_t cells[3] = {l.cells.x, l.cells.y, l.cells.z};
     const int32_t origin[3] = {l.origin.x, l.origin.y, l.origin.z};
-    const int32_t lo[3] = {m.tight.lo.x, m.tight.lo.y, m.tight.lo.z};
-    const int32_t hi[3] = {m.tight.hi.x, m.tight.hi.y, m.tight.hi.z};
+    const box both = box_of_both(m, c.glow);
+    const int32_t lo[3] = {both.lo.x, both.lo.y, both.lo.z};
+    const int32_t hi[3] = {both.hi.x, both.hi.y, both.hi.z};
 
     put32(&h[BRUME_OFF_MAGIC], BRUME_MAGIC);
     put16(&h[BRUME_OFF_MAJOR], BRUME_ASSET_MAJOR);
@@ -185,6 +190,15 @@ void put_bytes(sink &s, const std::vector<uint8_t> &bytes)
     s.put(bytes.data(), bytes.size());
 }
 
+void put_emission(sink &s, const asset_contents &c)
+{
+    uint8_t head[emission_head] = {};
+
+    put_number(head, double(c.glow.max));
+    s.put(head, sizeof head);
+    put_bytes(s, c.p.codes);
+}
+
 // At most 255 bytes, cut between two UTF-8 characters.
 std::string short_name(const std::string &name)
 {
@@ -200,9 +214,15 @@ std::string short_name(const std::string &name)
 asset_size size_of_asset(const brick_pool &p, const std::string &name,
                          const light_sizes &light)
 {
-    asset_size size = {
-        4 * p.cells.size(),      p.bytes.size(), 4 * p.ranges.size(),
-        short_name(name).size(), light,          0};
+    asset_size size = {};
+
+    size.cell = 4 * p.cells.size();
+    size.pool = p.bytes.size();
+    size.range = 4 * p.ranges.size();
+    size.name = short_name(name).size();
+    size.emission = p.glows ? emission_head + p.codes.size() : 0;
+    size.light = light;
+    size.has_ranges = p.format.has_ranges();
     const section last = place(size).back();
 
     size.total = last.offset + last.bytes;
@@ -235,8 +255,10 @@ asset_size write_asset(output &out, const asset_contents &c)
             put_bytes(s, c.light.mips);
         else if (part.id == BRUME_SECTION_SUNC)
             put_bytes(s, c.light.sun);
-        else
+        else if (part.id == BRUME_SECTION_AMBI)
             put_bytes(s, c.light.sky);
+        else
+            put_emission(s, c);
     }
     put32(&header[BRUME_OFF_CRC], s.crc());
     out.write_at(0, header.data(), ident_bytes);

@@ -13,8 +13,9 @@ namespace bake
 
 // Bytes of each section, and of the whole.
 struct asset_size {
-    uint64_t cell, pool, range, name;
+    uint64_t cell, pool, range, name, emission;
     light_sizes light;
+    bool has_ranges; // there is a section RNGE, if an empty one
     uint64_t total;
 };
 
@@ -24,7 +25,8 @@ asset_size size_of_asset(const brick_pool &p, const std::string &name,
 
 struct asset_contents {
     const volume &vol;
-    const measures &m;
+    const measures &m; // of the density
+    const emission_grid &glow;
     const layout &l;
     const brick_pool &p;
     const light_sections &light;
@@ -33,6 +35,7 @@ struct asset_contents {
 
 asset_size write_asset(output &out, const asset_contents &c);
 
+// `vol` is the density or the emission.
 void write_float_dump(output &out, const volume &vol, const layout &l);
 
 } // namespace bake

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // brume-bake: an OpenVDB or NanoVDB density becomes a brume asset.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -62,9 +63,10 @@ class baker
     void run()
     {
         open_outputs();
-        src_ = read_source(o_.input, o_.grid, o_.fog, bar_);
+        read_grids();
         r_.seconds.read = watch_.lap();
         prepare_voxels();
+        prepare_emission();
         if (o_.budget == 0)
             take_lod(std::max(o_.lod, 0));
         r_.seconds.voxels = watch_.lap();
@@ -93,6 +95,30 @@ class baker
             report_ = std::make_unique<atomic_file>(o_.report);
         if (!o_.dump.empty())
             dump_ = std::make_unique<atomic_file>(o_.dump);
+        if (!o_.emission_dump.empty())
+            emission_dump_ = std::make_unique<atomic_file>(o_.emission_dump);
+    }
+
+    // With a second grid one of the two may be missing, or have no voxels; no
+    // name stands for another then.
+    void read_grids()
+    {
+        const bool two = !o_.emission.empty();
+        const std::string grid = two && o_.grid.empty() ? "density" : o_.grid;
+        const grid_need need =
+            two || o_.allow_empty ? grid_need::nothing : grid_need::voxels;
+
+        src_ = read_source(o_.input, grid, o_.fog, need, bar_);
+        if (two)
+            glow_src_ = read_source(o_.input, o_.emission, false,
+                                    grid_need::nothing, bar_);
+        if (src_.missing && (!two || glow_src_.missing)) // for its message
+            read_source(o_.input, grid, o_.fog, grid_need::voxels, bar_);
+        for (const source *s : {&src_, &glow_src_})
+            if (s->missing)
+                notice("has no grid \"" + s->name + "\": it is 0 everywhere");
+        if (src_.missing)
+            std::copy_n(glow_src_.vol.world, 12, src_.vol.world);
     }
 
     void notice(const std::string &what)
@@ -102,32 +128,33 @@ class baker
                      what.c_str());
     }
 
-    void tell_about_source()
+    // `of` is "" or says of which grid.
+    void tell_about(const source &s, const std::string &of)
     {
-        const bad_voxels &b = src_.bad;
+        const bad_voxels &b = s.bad;
 
         if (b.total() > 0)
-            notice(text("%llu NaN, %llu infinite and %llu negative voxels "
-                        "are taken as 0",
-                        (unsigned long long)b.nan,
-                        (unsigned long long)b.infinite,
-                        (unsigned long long)b.negative));
-        if (src_.background != 0)
-            notice(text("the background is %g, not 0: the volume is the box "
+            notice(of + text("%llu NaN, %llu infinite and %llu negative voxels "
+                             "are taken as 0",
+                             (unsigned long long)b.nan,
+                             (unsigned long long)b.infinite,
+                             (unsigned long long)b.negative));
+        if (s.background != 0)
+            notice(of +
+                   text("the background is %g, not 0: the volume is the box "
                         "of the active voxels",
-                        src_.background));
-        if (src_.from_level_set)
+                        s.background));
+        if (s.from_level_set)
             notice("the level set was converted to a density");
     }
 
     // From what was read to what is quantised.
     void prepare_voxels()
     {
-        tell_about_source();
+        tell_about(src_, "");
         if (!is_uniform(src_.vol)) {
             measure(src_.vol); // drops empty blocks
-            if (!src_.vol.blocks.empty())
-                src_.vol = make_uniform(src_.vol);
+            src_.vol = make_uniform(src_.vol);
             r_.resampled = true;
             notice(text("its voxels are not cubes of one orientation: "
                         "resampled to cubes of %.6g",
@@ -138,12 +165,45 @@ class baker
             clamp(src_.vol, o_.max_density);
     }
 
-    void require_density(const measures &m) const
+    // The second grid, in the index space of the first.
+    void prepare_emission()
     {
-        if (m.voxels == 0)
-            throw failure("grid \"" + src_.name +
-                          "\" has no voxel with "
-                          "density above 0");
+        volume &vol = glow_.vol;
+
+        glow_.on = !o_.emission.empty();
+        if (!glow_.on || glow_src_.missing)
+            return;
+        tell_about(glow_src_, "grid \"" + glow_src_.name + "\": ");
+        vol = std::move(glow_src_.vol);
+        measure(vol); // drops empty blocks
+        if (!same_transform(vol.world, src_.vol.world)) {
+            vol = resample_to(vol, src_.vol.world);
+            notice("grid \"" + glow_src_.name +
+                   "\": resampled to the voxels "
+                   "of grid \"" +
+                   src_.name + "\"");
+        }
+        glow_.m = measure(vol);
+        if (o_.emission_max > 0 && glow_.m.max > o_.emission_max) {
+            notice(text("grid \"%s\": its maximum of %g is limited to %g",
+                        glow_src_.name.c_str(), double(glow_.m.max),
+                        double(o_.emission_max)));
+            clamp(vol, o_.emission_max);
+            glow_.m = measure(vol);
+        }
+        glow_.max = o_.emission_max > 0 ? o_.emission_max : glow_.m.max;
+    }
+
+    void require_voxels() const
+    {
+        if (m_.voxels > 0 || glow_.m.voxels > 0 || o_.allow_empty)
+            return;
+        if (glow_.on)
+            throw failure("neither grid \"" + src_.name + "\" nor grid \"" +
+                          o_.emission +
+                          "\" has a voxel above 0 (see --allow-empty)");
+        throw failure("grid \"" + src_.name +
+                      "\" has no voxel with density above 0");
     }
 
     int side() const
@@ -154,11 +214,14 @@ class baker
     void take_lod(int lod)
     {
         for (int i = 0; i < lod; i++)
-            src_.vol = halve(src_.vol);
+            src_.vol = halve(src_.vol), glow_ = halve(glow_);
         r_.lod = lod;
         m_ = measure(src_.vol);
-        require_density(m_);
-        l_ = make_layout(src_.vol, m_.tight, side(), o_.order);
+        require_voxels();
+        if (o_.emission_max == 0)
+            glow_.max = glow_.m.max;
+        l_ = make_layout(src_.vol, glow_, box_of_both(m_, glow_), side(),
+                         o_.order);
     }
 
     bool make(int format, const brick_limits &limit)
@@ -201,14 +264,17 @@ class baker
         const int last = o_.lod >= 0 ? o_.lod : most_lod;
         budget_search search({o_.budget, o_.formats(), std::max(o_.lod, 0),
                               last, side(), o_.order, src_.name, o_.light},
-                             std::move(src_.vol), bar_);
-        require_density(search.input_measures());
+                             std::move(src_.vol), std::move(glow_), bar_);
+        if (search.input_measures().voxels == 0)
+            throw failure("--budget needs density: grid \"" + src_.name +
+                          "\" has none");
         const candidate best = search.choose();
 
         r_.lod = best.lod;
         m_ = search.measures_at(best.lod);
-        l_ =
-            make_layout(search.volume_at(best.lod), m_.tight, side(), o_.order);
+        const emission_grid &glow = search.emission_at(best.lod);
+        l_ = make_layout(search.volume_at(best.lod), glow,
+                         box_of_both(m_, glow), side(), o_.order);
         make_bricks(search.volume_at(best.lod), m_, l_,
                     {best.format, l_.side, m_.max}, {}, bar_, pool_);
         r_.budget.bytes = o_.budget;
@@ -220,6 +286,8 @@ class baker
         r_.why = text("the least error that fits into %llu bytes",
                       (unsigned long long)o_.budget);
         src_.vol = search.take_volume(best.lod);
+        glow_ = search.take_emission(best.lod);
+        l_.glow = glow_.on ? &glow_ : nullptr;
         notice(budget_notice(r_.budget, best));
     }
 
@@ -244,6 +312,9 @@ class baker
         r_.asked_format = o_.format;
         r_.light = o_.light;
         r_.src = &src_;
+        r_.glow_name = glow_src_.name;
+        r_.glow_bad = glow_src_.bad;
+        r_.glow = &glow_;
         r_.m = &m_;
         r_.l = &l_;
         r_.pool = &pool_;
@@ -258,7 +329,8 @@ class baker
                                o_.licence.empty() ? src_.licence : o_.licence,
                                facts(r_)};
         const auto bake_to = [&](output &out) {
-            write_asset(out, {src_.vol, m_, l_, pool_, light_, src_.name});
+            write_asset(out,
+                        {src_.vol, m_, glow_, l_, pool_, light_, src_.name});
         };
 
         if (o_.form() == output_form::binary) {
@@ -283,13 +355,18 @@ class baker
         write_form();
         if (dump_)
             write_float_dump(*dump_, src_.vol, l_);
+        if (emission_dump_) {
+            std::copy_n(src_.vol.world, 12, glow_.vol.world);
+            write_float_dump(*emission_dump_, glow_.vol, l_);
+        }
         r_.seconds.write = watch_.lap();
         if (report_) {
             const std::string json = to_json(r_);
             report_->write(json.data(), json.size());
         }
         std::vector<atomic_file *> all;
-        for (const file *f : {&report_, &dump_, &included_, &asset_})
+        for (const file *f :
+             {&report_, &dump_, &emission_dump_, &included_, &asset_})
             if (*f)
                 all.push_back(f->get());
         for (atomic_file *f : all)
@@ -299,10 +376,11 @@ class baker
 
     const options &o_;
     stopwatch watch_;
-    file asset_, included_, report_, dump_;
+    file asset_, included_, report_, dump_, emission_dump_;
     progress bar_;
-    source src_;
+    source src_, glow_src_; // the second one if there is one
     measures m_;
+    emission_grid glow_;
     layout l_;
     brick_pool pool_;
     light_sections light_;

@@ -8,7 +8,6 @@
 #include <memory>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
-#include <tbb/parallel_sort.h>
 #include <tbb/task_arena.h>
 #include <unordered_map>
 
@@ -27,72 +26,10 @@ constexpr size_t batch_bricks = 512;
 // first, and how often to look from then on. A multiple of the batch.
 constexpr size_t check_bricks = 2048;
 
-// The low 12 bits of x, three apart. Cells per axis: < 2^12.
-uint64_t spread(uint32_t x)
-{
-    uint64_t v = x & 0xfffu;
-
-    v = (v | v << 16) & 0x0000ff0000ffu;
-    v = (v | v << 8) & 0x00f00f00f00fu;
-    v = (v | v << 4) & 0x0c30c30c30c3u;
-    v = (v | v << 2) & 0x249249249249u;
-    return v;
-}
-
-uint64_t order_key(const layout &l, brick_order order, ijk c)
-{
-    if (order == brick_order::linear)
-        return l.cell_index(c);
-    return spread(uint32_t(c.x)) | spread(uint32_t(c.y)) << 1 |
-           spread(uint32_t(c.z)) << 2;
-}
-
-void check_limits(const box &tight, ijk cells)
-{
-    const int most = std::max({cells.x, cells.y, cells.z});
-    const double bytes = 4.0 * cells.x * cells.y * cells.z;
-
-    if (most > int(BRUME_MAX_CELLS))
-        throw failure(text(
-            "%lld x %lld x %lld voxels need %d x %d x %d cells; the format "
-            "has at most %u per axis (try --lod)",
-            (long long)tight.hi.x - tight.lo.x + 1,
-            (long long)tight.hi.y - tight.lo.y + 1,
-            (long long)tight.hi.z - tight.lo.z + 1, cells.x, cells.y, cells.z,
-            BRUME_MAX_CELLS));
-    if (bytes >= double(blob_limit))
-        throw failure(text(
-            "the grid of %d x %d x %d cells takes %.2f GiB; the format holds "
-            "2 GiB (try --lod)",
-            cells.x, cells.y, cells.z, bytes / 1073741824));
-}
-
-// The cells whose apron reaches into a block: the block's own, and those one
-// below on any axes. The pool's lowest cells have none below: blocks there are
-// zero where an apron could reach, and keys of cells outside would be those of
-// others.
-void add_apron_jobs(const volume &vol, layout &l)
-{
-    const ijk first = {floor8(l.origin.x), floor8(l.origin.y),
-                       floor8(l.origin.z)};
-    const size_t blocks = vol.blocks.size();
-
-    l.map = block_map(vol);
-    for (size_t i = 0; i < 8 * blocks; i++) {
-        const ijk b = vol.blocks[i / 8].cell;
-        const ijk c = {b.x - int(i & 1), b.y - int(i >> 1 & 1),
-                       b.z - int(i >> 2 & 1)};
-        if (i % 8 != 0 && (l.map.at(c) != block_map::none || c.x < first.x ||
-                           c.y < first.y || c.z < first.z))
-            continue;
-        l.jobs.push_back(
-            {{c.x - first.x, c.y - first.y, c.z - first.z}, l.map.at(c), 0});
-    }
-}
-
 // The densities of a brick with its apron. Neighbours that do not exist are
 // zero.
-void gather_apron(const volume &vol, const layout &l, const job &j, float *out)
+void gather_apron(const volume &vol, const block_map &map, const layout &l,
+                  const job &j, float *out)
 {
     const float *near[8] = {};
     float scratch[8][block_voxels];
@@ -101,7 +38,7 @@ void gather_apron(const volume &vol, const layout &l, const job &j, float *out)
         const ijk c = {j.cell.x + floor8(l.origin.x) + (n & 1),
                        j.cell.y + floor8(l.origin.y) + (n >> 1 & 1),
                        j.cell.z + floor8(l.origin.z) + (n >> 2)};
-        const uint32_t b = l.map.at(c);
+        const uint32_t b = map.at(c);
         if (b != block_map::none)
             near[n] = expand(vol.blocks[b], scratch[n]);
     }
@@ -116,9 +53,9 @@ void gather_apron(const volume &vol, const layout &l, const job &j, float *out)
 
 // Multiply and fold, a word at a time: collisions are compared, so a hash
 // need only be fast and even.
-uint64_t hash_bytes(const uint8_t *p, size_t bytes, range r)
+uint64_t hash_bytes(const uint8_t *p, size_t bytes, uint64_t h)
 {
-    uint64_t h = (uint64_t(r.base) << 16 | r.scale) + 0x9e3779b97f4a7c15u;
+    h += 0x9e3779b97f4a7c15u;
 
     for (size_t i = 0; i < bytes; i += 4) {
         uint32_t w;
@@ -134,10 +71,44 @@ brick_result quantise_job(const volume &vol, const layout &l,
 {
     float scratch[max_brick_voxels];
 
-    if (l.side == block_side)
+    if (l.side == apron_side) {
+        gather_apron(vol, l.map, l, j, scratch);
+        return quantise(f, scratch, codes);
+    }
+    if (j.block != block_map::none)
         return quantise(f, expand(vol.blocks[j.block], scratch), codes);
-    gather_apron(vol, l, j, scratch);
+    std::fill_n(scratch, block_voxels, 0.0f);
     return quantise(f, scratch, codes);
+}
+
+struct glow_result {
+    bool empty = true; // every code is 0, also those that an apron would have
+    emission_error error;
+};
+
+// The codes of the emission, without an apron. With one of the density a cell
+// is occupied, too, where it would have any.
+glow_result encode_job(const layout &l, const job &j, uint8_t *codes)
+{
+    const emission_grid &glow = *l.glow;
+    float scratch[max_brick_voxels] = {};
+    uint8_t around[max_brick_voxels];
+    const float *values = scratch;
+    glow_result r;
+
+    if (j.glow != block_map::none)
+        values = expand(glow.vol.blocks[j.glow], scratch);
+    encode_emission(values, block_voxels, glow.max, codes);
+    r.error = error_of_emission(values, codes, glow.max);
+    r.empty = std::all_of(codes, codes + block_voxels,
+                          [](uint8_t q) { return q == 0; });
+    if (!r.empty || l.side == block_side)
+        return r;
+    gather_apron(glow.vol, l.glow_map, l, j, scratch);
+    encode_emission(scratch, max_brick_voxels, glow.max, around);
+    r.empty = std::all_of(around, around + max_brick_voxels,
+                          [](uint8_t q) { return q == 0; });
+    return r;
 }
 
 // The bricks of `count` jobs from `first` on.
@@ -145,6 +116,8 @@ struct batch {
     size_t first, count;
     std::vector<brick_result> results;
     std::vector<uint8_t> codes;
+    std::vector<glow_result> glow_results; // when there is emission
+    std::vector<uint8_t> glow_codes;
     std::vector<uint64_t> hashes;
 };
 
@@ -158,13 +131,24 @@ void quantise_batch(const volume &vol, const layout &l, const brick_format &f,
     b.results.resize(b.count);
     b.codes.resize(b.count * bytes);
     b.hashes.resize(b.count);
+    if (l.glow != nullptr) {
+        b.glow_results.resize(b.count);
+        b.glow_codes.resize(b.count * block_voxels);
+    }
     for (size_t i = 0; i < b.count; i++) {
         const job *j = &l.jobs[b.first + i];
         uint8_t *codes = &b.codes[i * bytes];
         if (i + 1 < b.count && j[1].block != block_map::none)
             prefetch(vol.blocks[j[1].block]);
         b.results[i] = quantise_job(vol, l, f, *j, codes);
-        b.hashes[i] = hash_bytes(codes, bytes, b.results[i].r);
+        const range r = b.results[i].r;
+        b.hashes[i] =
+            hash_bytes(codes, bytes, uint64_t(r.base) << 16 | r.scale);
+        if (l.glow == nullptr)
+            continue;
+        uint8_t *glow = &b.glow_codes[i * block_voxels];
+        b.glow_results[i] = encode_job(l, *j, glow);
+        b.hashes[i] = hash_bytes(glow, block_voxels, b.hashes[i]);
     }
 }
 
@@ -176,8 +160,10 @@ class brick_store
     {
     }
 
-    // The number of the brick with these codes and range, stored if new.
-    uint32_t number(const uint8_t *codes, range r, uint64_t hash)
+    // The number of the brick with these codes and range, and these codes of
+    // emission (or null), stored if new.
+    uint32_t number(const uint8_t *codes, range r, const uint8_t *glow,
+                    uint64_t hash)
     {
         const size_t bytes = pool_.format.bytes();
         const auto found = first_.emplace(hash, uint32_t(pool_.bricks));
@@ -186,7 +172,10 @@ class brick_store
             uint32_t n = found.first->second;
             for (; n != block_map::none; n = next_[n])
                 if (ranges_[n] == r &&
-                    !std::memcmp(&pool_.bytes[n * bytes], codes, bytes))
+                    !std::memcmp(&pool_.bytes[n * bytes], codes, bytes) &&
+                    (glow == nullptr ||
+                     !std::memcmp(&pool_.codes[size_t(n) * block_voxels], glow,
+                                  block_voxels)))
                     return n;
             next_.push_back(found.first->second);
             found.first->second = uint32_t(pool_.bricks);
@@ -194,6 +183,8 @@ class brick_store
             next_.push_back(block_map::none);
         }
         pool_.bytes.insert(pool_.bytes.end(), codes, codes + bytes);
+        if (glow != nullptr)
+            pool_.codes.insert(pool_.codes.end(), glow, glow + block_voxels);
         ranges_.push_back(r);
         return uint32_t(pool_.bricks++);
     }
@@ -235,6 +226,8 @@ struct error_sum {
                                   const brick_format &f) const
     {
         const double unit = double(f.density_max) / BRUME_RANGE_TOP;
+        if (m.voxels == 0)
+            return {};
         return {std::sqrt(squared / double(m.voxels)) * unit, worst * unit};
     }
 };
@@ -250,7 +243,7 @@ quantisation_error probe(const volume &vol, const measures &m, const layout &l,
                          const brick_format &f)
 {
     const size_t some = std::min(check_bricks, l.jobs.size());
-    const size_t step = l.jobs.size() / some;
+    const size_t step = some > 0 ? l.jobs.size() / some : 1;
     std::vector<brick_result> results(some);
     error_sum sum;
 
@@ -274,6 +267,7 @@ class pool_maker
         pool.cells.assign(l.cell_count(), BRUME_CELL_EMPTY | 255);
         pool.bytes.reserve(std::min<uint64_t>(
             l.jobs.size() * pool.format.bytes(), blob_limit));
+        pool.glows = l.glow != nullptr;
     }
 
     // Returns false when the error or the size passes its limit.
@@ -284,10 +278,14 @@ class pool_maker
         for (size_t i = 0; i < b.count; i++) {
             const brick_result &r = b.results[i];
             sum_.add(r);
-            if (r.empty)
+            const uint8_t *glow =
+                pool_.glows ? &b.glow_codes[i * block_voxels] : nullptr;
+            if (pool_.glows)
+                add_glow(b.glow_results[i].error);
+            if (r.empty && (!pool_.glows || b.glow_results[i].empty))
                 continue;
             pool_.cells[l_.cell_index(l_.jobs[b.first + i].cell)] =
-                store_.number(&b.codes[i * bytes], r.r, b.hashes[i]);
+                store_.number(&b.codes[i * bytes], r.r, glow, b.hashes[i]);
             pool_.occupied++;
         }
         if (pool_bytes(pool_) > limit_.bytes)
@@ -303,56 +301,37 @@ class pool_maker
     {
         if (pool_.format.has_ranges())
             pool_.ranges = store_.take_ranges();
+        if (pool_.glows && l_.glow->m.voxels > 0) {
+            const double unit = double(l_.glow->max) / 255;
+            const double n = double(l_.glow->m.voxels);
+            pool_.glow_error = {std::sqrt(glow_.squared / n) * unit,
+                                glow_.worst * unit};
+        }
         fill_distances(pool_.cells, l_.cells);
     }
 
   private:
+    void add_glow(const emission_error &e)
+    {
+        glow_.squared += e.squared;
+        glow_.worst = std::max(glow_.worst, e.worst);
+    }
+
     const measures &m_;
     const layout &l_;
     const brick_limits limit_;
     brick_pool &pool_;
     brick_store store_;
     error_sum sum_;
+    emission_error glow_;
 };
 
 } // namespace
 
 uint64_t pool_bytes(const brick_pool &p)
 {
-    return p.bytes.size() + 4 * p.cells.size() +
+    return p.bytes.size() + p.codes.size() + 4 * p.cells.size() +
            (p.format.has_ranges() ? 4 * p.bricks : 0);
-}
-
-layout make_layout(const volume &vol, const box &tight, int side,
-                   brick_order order)
-{
-    layout l;
-    const ijk lo = tight.lo, hi = tight.hi;
-
-    // One voxel of zeros below and above: floor8(lo - 1) .. ceil8(hi + 2).
-    const ijk first = {floor8(lo.x - 1), floor8(lo.y - 1), floor8(lo.z - 1)};
-    l.origin = {first.x * 8, first.y * 8, first.z * 8};
-    l.cells = {floor8(hi.x + 1) + 1 - first.x, floor8(hi.y + 1) + 1 - first.y,
-               floor8(hi.z + 1) + 1 - first.z};
-    l.side = side;
-    check_limits(tight, l.cells);
-    if (side == apron_side)
-        add_apron_jobs(vol, l);
-    else
-        for (size_t i = 0; i < vol.blocks.size(); i++) {
-            const ijk c = vol.blocks[i].cell;
-            l.jobs.push_back({{c.x - first.x, c.y - first.y, c.z - first.z},
-                              uint32_t(i),
-                              0});
-        }
-    for (job &j : l.jobs)
-        j.key = order_key(l, order, j.cell);
-    tbb::parallel_sort(
-        l.jobs.begin(), l.jobs.end(),
-        [](const job &a, const job &b) { return a.key < b.key; });
-    const auto same = [](const job &a, const job &b) { return a.key == b.key; };
-    l.jobs.erase(std::unique(l.jobs.begin(), l.jobs.end(), same), l.jobs.end());
-    return l;
 }
 
 bool make_bricks(const volume &vol, const measures &m, const layout &l,

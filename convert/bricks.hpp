@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "emission.hpp"
 #include "progress.hpp"
 #include "quantise.hpp"
 #include "volume.hpp"
@@ -19,11 +20,12 @@ namespace bake
 // use signed offsets.
 constexpr uint64_t blob_limit = uint64_t(1) << 31;
 
-// One brick to make. `block` is block_map::none for a cell that is all zero
-// but for its apron.
+// One brick to make. `block` and `glow`, of the density and of the emission,
+// are block_map::none where a cell has none: it is all zero but for the other
+// grid or an apron.
 struct job {
     ijk cell; // pool cell, from 0
-    uint32_t block;
+    uint32_t block, glow;
     uint64_t key; // bricks are numbered by it
 };
 
@@ -35,7 +37,8 @@ struct layout {
     ijk cells = {0, 0, 0};
     int side = block_side;
     std::vector<job> jobs;
-    block_map map; // for the apron only
+    block_map map, glow_map;             // for the apron only
+    const emission_grid *glow = nullptr; // must stay, if there is one
 
     size_t cell_count() const
     {
@@ -49,10 +52,11 @@ struct layout {
 };
 
 // Cells are aligned to the 8^3 blocks of the volume; a layer of voxels around
-// the tight box is kept zero. Throws `failure` with the figures when there
-// are more cells than the format can index.
-layout make_layout(const volume &vol, const box &tight, int side,
-                   brick_order order);
+// the tight box (of both grids) is kept zero. Without any voxel there is one
+// cell. Throws `failure` with the figures when there are more cells than the
+// format can index.
+layout make_layout(const volume &vol, const emission_grid &glow,
+                   const box &tight, int side, brick_order order);
 
 // Quantisation error over the non-zero voxels, in the density's own unit.
 struct quantisation_error {
@@ -64,9 +68,12 @@ struct brick_pool {
     std::vector<uint32_t> cells; // the CELL section
     std::vector<uint8_t> bytes;  // the POOL section
     std::vector<range> ranges;   // the RNGE section, empty in u8
+    bool glows = false;          // is there a section EMIT?
+    std::vector<uint8_t> codes;  // of it
     uint64_t bricks = 0;
     uint64_t occupied = 0; // cells that refer to a brick
     quantisation_error error;
+    quantisation_error glow_error; // of the emission
 };
 
 // What a pool must keep to. `bytes` counts cells, bricks and ranges.

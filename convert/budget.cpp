@@ -33,17 +33,17 @@ const char *format_name(int format)
 } // namespace
 
 budget_search::budget_search(const budget_request &want, volume input,
-                             progress &bar)
+                             emission_grid glow, progress &bar)
     : want_(want), bar_(bar)
 {
-    levels_.push_back({std::move(input), {}, 0});
+    levels_.push_back({std::move(input), {}, std::move(glow), 0});
     levels_[0].m = measure(levels_[0].vol);
 }
 
 void budget_search::add_level()
 {
     const level &fine = levels_.back();
-    level next = {halve(fine.vol), {}, 0};
+    level next = {halve(fine.vol), {}, halve(fine.glow), 0};
 
     next.loss = fine.loss + volume_of_voxel(int(levels_.size()) - 1) *
                                 halving_loss(fine.vol, next.vol);
@@ -103,7 +103,8 @@ bool budget_search::lay_out(int lod, layout &l)
     const level &at = levels_[size_t(lod)];
 
     try {
-        l = make_layout(at.vol, at.m.tight, want_.side, want_.order);
+        l = make_layout(at.vol, at.glow, box_of_both(at.m, at.glow), want_.side,
+                        want_.order);
         return true;
     } catch (const failure &) {
         if (lod == want_.last_lod)

@@ -40,7 +40,8 @@ struct candidate {
 class budget_search
 {
   public:
-    budget_search(const budget_request &want, volume input, progress &bar);
+    budget_search(const budget_request &want, volume input, emission_grid glow,
+                  progress &bar);
 
     // Throws `failure` with the smallest size there is when nothing fits.
     const candidate &choose();
@@ -61,15 +62,24 @@ class budget_search
     {
         return levels_[size_t(lod)].vol;
     }
+    const emission_grid &emission_at(int lod) const
+    {
+        return levels_[size_t(lod)].glow;
+    }
     volume take_volume(int lod)
     {
         return std::move(levels_[size_t(lod)].vol);
+    }
+    emission_grid take_emission(int lod)
+    {
+        return std::move(levels_[size_t(lod)].glow);
     }
 
   private:
     struct level {
         volume vol;
         measures m;
+        emission_grid glow;
         double loss; // sum of squares over the input that halving has cost
     };
 

@@ -133,7 +133,7 @@ template <class grid_type> class extractor
     {
         box_ = tree_.root().beginChildAll() ? active_box() : CoordBBox();
         if (box_.empty())
-            throw failure("has no active voxels");
+            return;
         out_.active = tree_.activeVoxelCount();
         out_.background = double(tree_.background());
         find_tiles();

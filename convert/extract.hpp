@@ -15,7 +15,7 @@ namespace bake
 struct extracted {
     volume vol;
     bad_voxels bad;
-    uint64_t active = 0; // active voxels
+    uint64_t active = 0; // active voxels; without any there is no volume
     double background = 0;
 };
 

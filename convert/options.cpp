@@ -21,6 +21,14 @@ const char usage[] =
     "                       asset as C; or FILE.S, assembly that includes\n"
     "                       FILE.brume, which is written too\n"
     "  --grid NAME|#i       the grid to take, by name or index from 0\n"
+    "  --emission NAME|#i   add a second grid that glows: temperature, "
+    "flames;\n"
+    "                       either grid may be missing or empty\n"
+    "  --emission-max V     its value of the largest code, the same for all\n"
+    "                       frames of a sequence; limits it (default: its "
+    "own)\n"
+    "  --allow-empty        make an empty asset of grids without voxels: a\n"
+    "                       frame in which nothing burns\n"
     "  --format F           auto (default), u8, u8r or u4r\n"
     "  --lod N              halve the resolution N times, 0 to 8\n"
     "  --budget BYTES       choose level of detail and format with the least\n"
@@ -46,6 +54,7 @@ const char usage[] =
     "                       the input says)\n"
     "  --report FILE        write figures as JSON\n"
     "  --dump-float FILE    write the voxels before quantisation\n"
+    "  --dump-emission FILE the same of the second grid\n"
     "  --threads N          use N threads (default: all); the output is the "
     "same\n"
     "  --help               this text\n"
@@ -141,6 +150,12 @@ bool set_value(options &o, const std::string &key, const char *v)
         o.output = v;
     else if (key == "--grid")
         o.grid = v;
+    else if (key == "--emission")
+        o.emission = v;
+    else if (key == "--emission-max")
+        o.emission_max = positive_number(key, v, std::strtof);
+    else if (key == "--dump-emission")
+        o.emission_dump = v;
     else if (key == "--format")
         o.format = v;
     else if (key == "--lod")
@@ -180,6 +195,8 @@ bool set_flag(options &o, const std::string &key)
 {
     if (key == "--apron")
         o.apron = true;
+    else if (key == "--allow-empty")
+        o.allow_empty = true;
     else if (key == "--mips")
         o.light.mips = true;
     else if (key == "--sky-visibility")
@@ -208,7 +225,8 @@ void check_outputs(const options &o)
     std::error_code none;
     std::vector<std::string> seen;
 
-    for (const std::string &out : {o.output, binary, o.report, o.dump}) {
+    for (const std::string &out :
+         {o.output, binary, o.report, o.dump, o.emission_dump}) {
         if (out.empty())
             continue;
         if (std::filesystem::equivalent(o.input, out, none))
@@ -232,6 +250,17 @@ void check_light(const options &o)
         bad_usage("--sky-extinction needs --sky-visibility");
 }
 
+void check_emission(const options &o)
+{
+    if (o.emission.empty() && o.emission_max > 0)
+        bad_usage("--emission-max needs --emission NAME");
+    if (o.emission.empty() && !o.emission_dump.empty())
+        bad_usage("--dump-emission needs --emission NAME");
+    if (o.allow_empty && o.budget > 0)
+        bad_usage(
+            "--budget is of volumes that are not empty: no --allow-empty");
+}
+
 void check_options(const options &o)
 {
     if (o.input.empty())
@@ -246,6 +275,7 @@ void check_options(const options &o)
         bad_usage("--symbol takes a C identifier that starts with a letter "
                   "and is no keyword or register, not \"" +
                   o.symbol + "\"");
+    check_emission(o);
     check_light(o);
     check_outputs(o);
 }

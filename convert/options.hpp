@@ -18,11 +18,14 @@ constexpr int most_lod = 8;
 struct options {
     std::string input, output, grid, format = "auto", report, dump;
     std::string symbol, licence;
-    int lod = -1; // -1: not given
+    std::string emission, emission_dump; // grid; file
+    float emission_max = 0;              // 0: its own
+    int lod = -1;                        // -1: not given
     int threads = 0;
     uint64_t budget = 0;   // bytes; 0: not given
     float max_density = 0; // 0: no limit
     bool apron = false, fog = false, help = false;
+    bool allow_empty = false;
     bool sun = false, sky = false; // were they given?
     brick_order order = brick_order::morton;
     light_request light;

@@ -74,7 +74,9 @@ template <class real> void scale(const float *densities, real units, work &w)
 
 void to_units(const brick_format &f, const float *densities, work &w)
 {
-    const double units = double(BRUME_RANGE_TOP) / double(f.density_max);
+    // Without density there is nothing to scale.
+    const double units =
+        f.density_max > 0 ? double(BRUME_RANGE_TOP) / double(f.density_max) : 0;
 
     // A product of two floats is exact in double, so one rounding to float
     // gives the same either way, and floats are twice as fast.

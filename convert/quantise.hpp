@@ -29,7 +29,7 @@ inline bool operator==(const range &a, const range &b)
 struct brick_format {
     int format;        // BRUME_U8, BRUME_U8R or BRUME_U4R
     int side;          // 8, or 9 with an apron
-    float density_max; // what the largest code stands for, > 0
+    float density_max; // what the largest code stands for
 
     int top() const;          // the largest code
     bool has_ranges() const;  // a range per brick

@@ -146,6 +146,34 @@ std::string error_json(const report &r)
     return o.close();
 }
 
+std::string emission_json(const report &r)
+{
+    json_object o(2);
+
+    o.add("name", r.glow_name);
+    o.add("nan", r.glow_bad.nan);
+    o.add("infinite", r.glow_bad.infinite);
+    o.add("negative", r.glow_bad.negative);
+    o.add("voxels", r.glow->m.voxels);
+    o.add("max", double(r.glow->m.max));
+    o.add("mean", r.glow->m.mean);
+    o.add("value_of_255", double(r.glow->max));
+    o.add("bytes", r.size.emission);
+    o.add("rmse", r.pool->glow_error.rmse);
+    o.add("max_error", r.pool->glow_error.worst);
+    return o.close();
+}
+
+// In a line of the summary, or of the facts.
+std::string emission_text(const report &r)
+{
+    return text("grid \"%s\", %llu voxels, max %.6g, mean %.6g; code 255 is "
+                "%.6g, rmse %.3g, %llu bytes",
+                r.glow_name.c_str(), (unsigned long long)r.glow->m.voxels,
+                double(r.glow->m.max), r.glow->m.mean, double(r.glow->max),
+                r.pool->glow_error.rmse, (unsigned long long)r.size.emission);
+}
+
 std::string seconds_json(const stage_seconds &s)
 {
     json_object o(2);
@@ -190,6 +218,12 @@ std::string light_line(const report &r)
     return s + text("%.1f %% more, %.2f s\n",
                     100 * light / (double(r.size.total) - light),
                     r.seconds.light);
+}
+
+// Of a mean that is 0 where there is nothing.
+double percent(double error, double mean)
+{
+    return mean > 0 ? 100 * error / mean : 0;
 }
 
 const char *format_of(const candidate &c)
@@ -252,6 +286,8 @@ std::string to_json(const report &r)
     o.raw("volume", volume_json(r));
     o.raw("asset", asset_json(r));
     o.raw("quantisation_error", error_json(r));
+    if (r.pool->glows)
+        o.raw("emission", emission_json(r));
     o.raw("seconds", seconds_json(r.seconds));
     if (r.budget.bytes > 0)
         o.raw("budget", budget_json(r.budget));
@@ -291,9 +327,11 @@ std::vector<std::string> facts(const report &r)
         text("format    %s, %llu bytes", p.format.name(),
              (unsigned long long)r.size.total),
         text("error     rmse %.3g, max %.3g (%.3g %% and %.3g %% of the mean)",
-             p.error.rmse, p.error.worst, 100 * p.error.rmse / r.m->mean,
-             100 * p.error.worst / r.m->mean)};
+             p.error.rmse, p.error.worst, percent(p.error.rmse, r.m->mean),
+             percent(p.error.worst, r.m->mean))};
 
+    if (p.glows)
+        list.push_back("emission  " + emission_text(r));
     for (const std::string &part : light_texts(r))
         list.push_back("light     " + part);
     if (r.budget.bytes > 0)
@@ -320,13 +358,15 @@ std::string summary(const report &r)
               p.format.side == apron_side ? " with apron" : "", r.why.c_str());
     s += text("error: rmse %.3g, max %.3g (%.3g %% and %.3g %% of the "
               "mean)\n",
-              p.error.rmse, p.error.worst, 100 * p.error.rmse / r.m->mean,
-              100 * p.error.worst / r.m->mean);
+              p.error.rmse, p.error.worst, percent(p.error.rmse, r.m->mean),
+              percent(p.error.worst, r.m->mean));
     s += text("%d x %d x %d cells, %llu occupied, %llu bricks (%llu "
               "shared)\n",
               r.l->cells.x, r.l->cells.y, r.l->cells.z,
               (unsigned long long)p.occupied, (unsigned long long)p.bricks,
               (unsigned long long)shared(p));
+    if (p.glows)
+        s += "emission: " + emission_text(r) + "\n";
     if (r.light.any())
         s += light_line(r);
     s += text("%s: %llu bytes, %.2f s (read %.2f, voxels %.2f, quantise "

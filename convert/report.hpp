@@ -37,6 +37,9 @@ struct report {
     budget_report budget;
     const source *src = nullptr;
     const measures *m = nullptr;
+    const emission_grid *glow = nullptr;
+    std::string glow_name;
+    bad_voxels glow_bad;
     const layout *l = nullptr;
     const brick_pool *pool = nullptr;
     asset_size size = {};

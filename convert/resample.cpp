@@ -175,7 +175,8 @@ struct extent {
     double lo[3], hi[3];
 };
 
-extent transformed(const matrix &m, const vec &lo, const vec &hi)
+extent transformed(const matrix &m, const vec &lo, const vec &hi,
+                   const vec &shift)
 {
     extent e = {{INFINITY, INFINITY, INFINITY},
                 {-INFINITY, -INFINITY, -INFINITY}};
@@ -185,8 +186,8 @@ extent transformed(const matrix &m, const vec &lo, const vec &hi)
             m * vec{{c & 1 ? hi.v[0] : lo.v[0], c & 2 ? hi.v[1] : lo.v[1],
                      c & 4 ? hi.v[2] : lo.v[2]}};
         for (int a = 0; a < 3; a++) {
-            e.lo[a] = std::min(e.lo[a], p.v[a]);
-            e.hi[a] = std::max(e.hi[a], p.v[a]);
+            e.lo[a] = std::min(e.lo[a], p.v[a] + shift.v[a]);
+            e.hi[a] = std::max(e.hi[a], p.v[a] + shift.v[a]);
         }
     }
     return e;
@@ -222,7 +223,7 @@ box cells_of(const volume &vol)
 
 // The new cells that may hold something.
 std::vector<block> find_cells(const sampler &source, const matrix &to_source,
-                              const box &range)
+                              const vec &shift, const box &range)
 {
     std::vector<block> list;
 
@@ -231,7 +232,7 @@ std::vector<block> find_cells(const sampler &source, const matrix &to_source,
             for (int x = range.lo.x; x <= range.hi.x; x++) {
                 const vec lo = {{8.0 * x, 8.0 * y, 8.0 * z}};
                 const vec hi = {{lo.v[0] + 7, lo.v[1] + 7, lo.v[2] + 7}};
-                const box b = cells_of(transformed(to_source, lo, hi));
+                const box b = cells_of(transformed(to_source, lo, hi, shift));
                 if (source.any_block(b.lo, b.hi))
                     list.push_back({{x, y, z}, 0, nullptr});
             }
@@ -329,46 +330,78 @@ bool is_uniform(const volume &vol)
     return at_right_angles(m) && determinant(m) > 0;
 }
 
-volume make_uniform(const volume &in)
+volume resample_to(const volume &in, const double world[12])
 {
     volume out;
-    const matrix old = linear_part(in);
-    const matrix now = uniform_axes(old, smallest_voxel(old));
+
+    std::copy_n(world, 12, out.world);
+    if (in.blocks.empty())
+        return out;
+    const matrix old = linear_part(in), now = linear_part(out);
     const matrix from_old = inverse(now), to_old = inverse(old);
     matrix source, target; // new index to old index, and back
+    vec way;               // of index 0
 
     for (int j = 0; j < 3; j++) {
         const vec s = to_old * now.column(j), t = from_old * old.column(j);
         for (int i = 0; i < 3; i++) {
             source.m[i][j] = s.v[i];
             target.m[i][j] = t.v[i];
-            out.world[4 * i + j] = now.m[i][j];
         }
-        out.world[4 * j + 3] = in.world[4 * j + 3];
+        way.v[j] = world[4 * j + 3] - in.world[4 * j + 3];
     }
+    const vec shift = to_old * way;
+    const vec back = from_old * vec{{-way.v[0], -way.v[1], -way.v[2]}};
     const box b = cells_of(in);
     const box range = cells_of(transformed(
         target, {{8.0 * b.lo.x - 1, 8.0 * b.lo.y - 1, 8.0 * b.lo.z - 1}},
-        {{8.0 * b.hi.x + 8, 8.0 * b.hi.y + 8, 8.0 * b.hi.z + 8}}));
+        {{8.0 * b.hi.x + 8, 8.0 * b.hi.y + 8, 8.0 * b.hi.z + 8}}, back));
     require_memory((range.hi.x - range.lo.x + 1.0) *
                        (range.hi.y - range.lo.y + 1.0) *
                        (range.hi.z - range.lo.z + 1.0) * 8,
                    "the grid resampled to cubes");
     const sampler from(in);
-    out.blocks = find_cells(from, source, range);
+    out.blocks = find_cells(from, source, shift, range);
     require_memory(2100.0 * double(out.blocks.size()),
                    "the grid resampled to cubes");
     float *chunk = new_chunk(out, out.blocks.size());
     tbb::parallel_for(size_t(0), out.blocks.size(), [&](size_t i) {
         const ijk c = out.blocks[i].cell;
         float *v = chunk + i * block_voxels;
-        for (int k = 0; k < block_voxels; k++)
-            v[k] =
-                from.at(source * vec{{8.0 * c.x + k % 8, 8.0 * c.y + k / 8 % 8,
-                                      8.0 * c.z + k / 64}});
+        for (int k = 0; k < block_voxels; k++) {
+            vec p = source * vec{{8.0 * c.x + k % 8, 8.0 * c.y + k / 8 % 8,
+                                  8.0 * c.z + k / 64}};
+            for (int a = 0; a < 3; a++)
+                p.v[a] += shift.v[a];
+            v[k] = from.at(p);
+        }
         out.blocks[i].voxels = v;
     });
     return out;
+}
+
+bool same_transform(const double a[12], const double b[12])
+{
+    const double size = std::hypot(a[0], a[4], a[8]);
+
+    for (int i = 0; i < 12; i++)
+        if (!(std::fabs(a[i] - b[i]) <= size * (i % 4 < 3 ? 1e-6 : 1e-4)))
+            return false;
+    return true;
+}
+
+volume make_uniform(const volume &in)
+{
+    const matrix old = linear_part(in);
+    const matrix now = uniform_axes(old, smallest_voxel(old));
+    double world[12];
+
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            world[4 * i + j] = now.m[i][j];
+        world[4 * i + 3] = in.world[4 * i + 3];
+    }
+    return resample_to(in, world);
 }
 
 } // namespace bake

@@ -293,14 +293,14 @@ size_t choose_grid(const std::vector<grid_entry> &grids,
                            found, wanted.c_str()) +
                           list_of(grids),
                       status_usage);
-    throw failure(
+    throw no_such_grid(
         "has no grid named \"" + wanted +
             "\"; choose with --grid NAME or --grid '#i':" + list_of(grids),
         status_usage);
 }
 
 source read_source(const std::string &path, const std::string &choice,
-                   bool level_set_to_fog, progress &bar)
+                   bool level_set_to_fog, grid_need need, progress &bar)
 try {
     source s;
     std::string file_licence;
@@ -320,6 +320,8 @@ try {
         s.from_level_set = true;
     }
     extracted x = extract(*grid, bar);
+    if (x.active == 0 && need == grid_need::voxels)
+        throw failure("has no active voxels");
     s.name = e.name;
     s.type = e.type;
     s.grid_class = e.grid_class;
@@ -328,6 +330,13 @@ try {
     s.active = x.active;
     s.background = x.background;
     return s;
+} catch (const no_such_grid &) {
+    if (need == grid_need::voxels)
+        throw;
+    source none;
+    none.name = choice;
+    none.missing = true;
+    return none;
 } catch (const std::ios_base::failure &) {
     throw failure("is truncated or cannot be read");
 }

@@ -23,13 +23,27 @@ struct source {
     uint64_t active = 0;
     double background = 0;
     bool from_level_set = false;
+    bool missing = false; // there is no such grid; then `name` is all there is
+};
+
+// There is no grid of that name.
+class no_such_grid : public failure
+{
+  public:
+    using failure::failure;
+};
+
+// What a grid may be for read_source() to succeed.
+enum class grid_need {
+    voxels, // it must be there, and have voxels
+    nothing // it may have none, or be missing
 };
 
 // Read the density that `choice` names ("", a name, or "#index") from an
 // OpenVDB or NanoVDB file. Throws `failure` with one line, or several with a
 // list of grids when it is for the user to choose.
 source read_source(const std::string &path, const std::string &choice,
-                   bool level_set_to_fog, progress &bar);
+                   bool level_set_to_fog, grid_need need, progress &bar);
 
 // What the list of grids says of each.
 struct grid_entry {

@@ -147,7 +147,8 @@ measures measure(volume &vol)
         vol.blocks[kept++] = b;
     }
     vol.blocks.resize(kept);
-    m.tight = {lo, hi};
+    if (m.voxels > 0)
+        m.tight = {lo, hi};
     m.mean = m.voxels ? sum / double(m.voxels) : 0;
     return m;
 }

@@ -53,8 +53,8 @@ struct volume {
 
 // Figures over the non-zero voxels.
 struct measures {
-    box tight;     // smallest box around them, index space
-    float max = 0; // 0: there are none
+    box tight = {{0, 0, 0}, {0, 0, 0}}; // smallest around them, index space
+    float max = 0;                      // 0: there are none
     double mean = 0;
     uint64_t voxels = 0;
 };

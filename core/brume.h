@@ -151,7 +151,8 @@ extern "C" {
 #ifndef BRUME_WITH_SURFACE /* depth buffers, the sun's map; 2.0 KiB */
 #define BRUME_WITH_SURFACE BRUME_WITH_LIGHTING
 #endif
-#ifndef BRUME_WITH_EMISSION /* fire: the asset's second grid */
+/* fire: the asset's second grid; 3.2 KiB, and 2 of struct brume_frame */
+#ifndef BRUME_WITH_EMISSION
 #define BRUME_WITH_EMISSION BRUME_WITH_LIGHTING
 #endif
 #ifndef BRUME_WITH_DITHER /* pixels of few bits; needs noise; 0.5 KiB */
@@ -279,6 +280,7 @@ extern "C" {
 #define BRUME_SECTION_MIPS 0x5350494du
 #define BRUME_SECTION_SUNC 0x434e5553u
 #define BRUME_SECTION_AMBI 0x49424d41u
+#define BRUME_SECTION_EMIT 0x54494d45u
 #define BRUME_CELL_EMPTY 0x80000000u /* set: bits 0..7 are a distance */
 #define BRUME_RANGE_TOP 65280u       /* largest base + top * scale */
 
@@ -373,6 +375,10 @@ struct brume_volume {
 #endif
 #if BRUME_WITH_AMBIENT
     const uint8_t *sky; /* visibility of the sky, one per cell; or NULL */
+#endif
+#if BRUME_WITH_EMISSION
+    const uint8_t *emission;          /* 512 codes per brick, or NULL */
+    struct brume_number emission_max; /* what code 255 means */
 #endif
 };
 
@@ -729,7 +735,8 @@ struct brume_lighting {
     const struct brume_surface *surface; /* or NULL */
     const struct brume_sun_map *sun_map; /* or NULL */
     /* Light of the asset's EMIT section, by its code: 256 colours, Q16.16, 0 ..
-     * 16; NULL: none. And extinction per voxel and unit of it, Q32.32. */
+     * 16, and between codes between theirs; NULL: none. And extinction per
+     * voxel and unit of it, Q32.32. */
     const uint32_t (*emission_colour)[3];
     uint64_t emission_scale;
 };
@@ -957,6 +964,13 @@ struct brume_lit {
 #endif
 #if BRUME_WITH_DITHER
     bool dither;
+#endif
+#if BRUME_WITH_EMISSION
+    bool emits;
+    uint32_t exposure; /* Q16.16, of what glows */
+    /* Two halves of transmittance of a sample, Q0.32, by the bytes of the
+     * second grid's value in 1/256 of a code. */
+    uint32_t emission[512];
 #endif
 };
 #endif

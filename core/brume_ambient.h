@@ -18,6 +18,9 @@ struct gathered {
 #if BRUME_WITH_LAMPS
     uint32_t lamp[3]; /* C_c, Q3.29, colours applied */
 #endif
+#if BRUME_WITH_EMISSION
+    uint32_t glow[3]; /* E_c, Q6.26, <= 16 */
+#endif
     uint32_t moved[3]; /* Q16.16, 0 .. 1: of stochastic lookups */
     uint32_t lit;      /* samples */
 };

@@ -176,7 +176,8 @@ static int bind_sections(struct brume_volume *v, const uint8_t *p)
 #define MIP_BYTES 72u      /* levels 1 and 2 of a brick */
 #define SUN_HEAD_BYTES 32u /* spacing, direction, unit */
 #define SUN_OFF_UNIT 16u
-#define SKY_HEAD_BYTES 16u /* extinction */
+#define SKY_HEAD_BYTES 16u  /* extinction */
+#define GLOW_HEAD_BYTES 16u /* value of code 255 */
 
 #if BRUME_WITH_CONE
 /* Means: 72 bytes for each brick, then a byte for each cell, and for each cube
@@ -264,6 +265,24 @@ static int bind_sky(struct brume_volume *v, const uint8_t *p)
 }
 #endif
 
+#if BRUME_WITH_EMISSION
+/* The second grid: a head, and 512 codes for each brick. */
+static int bind_emission(struct brume_volume *v, const uint8_t *p)
+{
+    uint32_t bytes, offset = find_section(p, BRUME_SECTION_EMIT, &bytes);
+    if (offset == 0)
+        return BRUME_OK;
+    p += offset;
+    if (bytes < GLOW_HEAD_BYTES || !number_is_good(get_number(p)) ||
+        get32(p + 8) != 0 || get32(p + 12) != 0 ||
+        !is_product(v->bricks, 512, bytes - GLOW_HEAD_BYTES))
+        return BRUME_ERR_SECTION;
+    v->emission = p + GLOW_HEAD_BYTES;
+    v->emission_max = get_number(p);
+    return BRUME_OK;
+}
+#endif
+
 static int bind_light(struct brume_volume *v, const uint8_t *p)
 {
     int err = BRUME_OK;
@@ -279,6 +298,10 @@ static int bind_light(struct brume_volume *v, const uint8_t *p)
 #if BRUME_WITH_AMBIENT
     if (!err)
         err = bind_sky(v, p);
+#endif
+#if BRUME_WITH_EMISSION
+    if (!err)
+        err = bind_emission(v, p);
 #endif
     return err;
 }

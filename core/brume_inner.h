@@ -418,6 +418,10 @@ BRUME_INLINE bool brume_scene_has_colour(const struct brume_scene *s)
     uint32_t lamps = l->lamps != NULL ? l->lamp_count : 0;
     for (uint32_t i = 0; i < lamps && i < BRUME_MAX_LAMPS; i++)
         grey = grey && brume_is_grey(l->lamps[i].colour);
+    for (uint32_t i = 0;
+         BRUME_WITH_EMISSION && l->emission_colour != NULL && grey && i < 256;
+         i++)
+        grey = brume_is_grey(l->emission_colour[i]);
     return !grey;
 }
 

@@ -54,7 +54,8 @@ static bool is_missing(const struct brume_scene *s)
            (!BRUME_WITH_SURFACE &&
             (l->surface != NULL || l->sun_map != NULL)) ||
            (!BRUME_WITH_DITHER && l->dither) ||
-           (!BRUME_WITH_LAMPS && l->lamp_count != 0);
+           (!BRUME_WITH_LAMPS && l->lamp_count != 0) ||
+           (!BRUME_WITH_EMISSION && l->emission_colour != NULL);
 }
 
 static bool cache_is_good(const struct brume_lighting *l)
@@ -94,6 +95,8 @@ int brume_lit_check(const struct brume_scene *scene)
         (l->exposure != 0 &&
          (l->exposure < 0x100u || l->exposure > 16u << 16)) ||
         !colours_are_good(&l->sun_colour, 1) || !ambient_is_good(l) ||
+        (BRUME_WITH_EMISSION && l->emission_colour != NULL &&
+         !colours_are_good(l->emission_colour, 256)) ||
         !sky_is_good(l) || (l->haze != 0 && l->haze < 0x10000u) ||
         !world_is_good(scene))
         return BRUME_ERR_SCENE;
@@ -270,6 +273,12 @@ int brume_lit_begin(struct brume_frame *frame, const struct brume_scene *scene)
     if (l->fog != NULL)
         brume_fog_begin(f, scene);
 #endif
+#if BRUME_WITH_EMISSION
+    f->lit.emits = l->emission_colour != NULL && l->emission_scale != 0;
+    f->lit.exposure = l->exposure != 0 ? l->exposure : 0x10000u;
+    if (l->emission_colour != NULL && f->volume->emission == NULL)
+        return BRUME_ERR_SECTION;
+#endif
 #if BRUME_WITH_AMBIENT
     f->lit.ambient = l->ambient;
     if (l->ambient != BRUME_AMBIENT_NONE)
@@ -305,6 +314,16 @@ uint32_t brume_lit_sameness(const struct brume_frame *frame)
     for (int j = 0; j < 6; j++)
         for (int c = 0; c < 3; c++)
             h = h * 16777619u ^ l->ambient_colour[j][c];
+#endif
+#if BRUME_WITH_EMISSION
+    for (uint32_t i = 0; l->emits && i < 256; i++) {
+        const uint32_t *colour = l->lighting->emission_colour[i];
+        h = h * 16777619u ^ l->emission[i];
+        h = h * 16777619u ^ l->emission[256 + i];
+        for (int c = 0; c < 3; c++)
+            h = h * 16777619u ^ colour[c];
+    }
+    h = h * 16777619u ^ (l->emits ? l->exposure : 0);
 #endif
     return h;
 }

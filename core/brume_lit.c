@@ -7,6 +7,7 @@
  */
 #include "brume_air.h"
 #include "brume_ambient.h"
+#include "brume_emission.h"
 #include "brume_fog.h"
 #include "brume_lamps.h"
 #include "brume_sun.h"
@@ -135,6 +136,10 @@ static uint32_t channel_of(const struct brume_frame *f,
 #if BRUME_WITH_LAMPS
     light += (g->lamp[c] >> 13) + (g->lamp[c] >> 12 & 1u);
 #endif
+#if BRUME_WITH_EMISSION
+    if (f->lit.emits) /* Q6.26: three bits less than scaled() takes */
+        light += scaled(g->glow[c], f->lit.exposure << 3);
+#endif
     (void)g;
     return light < BRUME_MAX_LIGHT ? light : BRUME_MAX_LIGHT;
 }
@@ -225,6 +230,9 @@ struct matter {
     uint32_t d;       /* density, in codes of the kernel */
     uint32_t opacity; /* Q0.32 */
     bool any;
+#if BRUME_WITH_EMISSION
+    bool glows; /* may it? */
+#endif
 #if BRUME_WITH_FOG
     struct fog fog;
 #endif
@@ -240,12 +248,20 @@ static uint32_t find_matter(const struct brume_frame *f,
     uint32_t m = 1;
     at->d = at->opacity = 0;
     at->any = false;
+#if BRUME_WITH_EMISSION
+    at->glows = false;
+#endif
     if (is_inside(w) && !find_density(f, p[0], p[1], p[2], &at->d, *k)) {
         m = leap(f, &ray->line, p[0], p[1], p[2], at->d, *k);
         at->d = 0;
-    } else if (at->d > f->min_density) {
-        at->any = true;
-        at->opacity = opacity(f, at->d, is_narrow_frame(f));
+    } else {
+#if BRUME_WITH_EMISSION
+        at->any = at->glows = f->lit.emits && is_inside(w);
+#endif
+        if (at->d > f->min_density) {
+            at->any = true;
+            at->opacity = opacity(f, at->d, is_narrow_frame(f));
+        }
     }
 #if BRUME_WITH_FOG
     if (brume_has_fog(f)) {
@@ -293,12 +309,31 @@ static void add_sun(const struct brume_frame *f, const struct brume_ray *ray,
             mul_hi_floor(lost, transmittance_of(&f->lit.tau[i], sum));
 }
 
+/* What a sample takes of the ray, Q1.31. */
+static void lose(struct walk *w, uint32_t lost)
+{
+    w->transmittance -= lost;
+#if BRUME_WITH_DEPTH
+    w->where += moment(lost, w->index);
+#endif
+}
+
 /* Light and loss at a sample that holds something. */
 static void add_light(const struct brume_frame *f, const struct brume_ray *ray,
                       struct walk *w, const struct matter *at,
                       const struct kernel *k)
 {
-    uint32_t lost = mul_hi_floor(w->transmittance, at->opacity);
+    uint32_t fade = at->opacity, glowing = 0;
+#if BRUME_WITH_EMISSION
+    if (at->glows) {
+        glowing = glow_of(f, &w->g, w->p, w->transmittance, &fade);
+        if (at->opacity == 0) {
+            lose(w, glowing);
+            return;
+        }
+    }
+#endif
+    uint32_t lost = mul_hi_floor(w->transmittance, fade);
     BRUME_TALLY(lit_samples, 1);
     add_sun(f, ray, w, at, lost, k);
 #if BRUME_WITH_AMBIENT
@@ -310,10 +345,7 @@ static void add_light(const struct brume_frame *f, const struct brume_ray *ray,
         add_lamps(f, &w->g, ray, w->p, lost, k);
 #endif
     w->g.lit++;
-    w->transmittance -= lost;
-#if BRUME_WITH_DEPTH
-    w->where += moment(lost, w->index);
-#endif
+    lose(w, lost + glowing);
 }
 
 /* The next n samples, all of them in the pool or none. False when too little is

@@ -189,17 +189,17 @@ static struct brume_number times(struct brume_number a, uint32_t i)
 }
 
 /* unit: extinction over a step, per code. */
-static void fill_table(struct brume_frame *f, struct brume_number unit,
+static void fill_table(uint32_t table[512], struct brume_number unit,
                        bool narrow)
 {
     for (uint32_t i = 0; i < 256; i++) {
         uint32_t fine = brume_one_minus_exp(times(unit, i));
         if (narrow) {
-            f->table[i] = fine;
+            table[i] = fine;
             continue;
         }
-        f->table[i] = ~brume_one_minus_exp(times(unit, i << 8));
-        f->table[256 + i] = ~fine;
+        table[i] = ~brume_one_minus_exp(times(unit, i << 8));
+        table[256 + i] = ~fine;
     }
 }
 
@@ -310,6 +310,21 @@ static void set_lit_taus(struct brume_frame *f, const struct brume_scene *s,
 }
 #endif
 
+#if BRUME_WITH_EMISSION
+/* Values of the second grid count in 1/256 of its codes of 8 bits. */
+static void set_emission(struct brume_frame *f, const struct brume_scene *s)
+{
+    if (!f->lit.emits)
+        return;
+    struct brume_number unit =
+        brume_number_mul(f->volume->emission_max, per_code(false));
+    unit = brume_number_mul(unit, brume_number_of(s->step, -16));
+    unit =
+        brume_number_mul(unit, brume_number_q32(s->lighting->emission_scale));
+    fill_table(f->lit.emission, unit, false);
+}
+#endif
+
 int brume_march_begin(struct brume_frame *frame,
                       const struct brume_scene *scene)
 {
@@ -353,13 +368,16 @@ int brume_march_begin(struct brume_frame *frame,
     step = brume_number_mul(step, brume_number_q32(scene->density_scale));
     light_step = brume_number_mul(light_step,
                                   brume_number_q32(scene->light_density_scale));
-    fill_table(f, brume_number_mul(unit, step), narrow);
+    fill_table(f->table, brume_number_mul(unit, step), narrow);
     set_tau(&f->tau, brume_number_mul(unit, light_step));
 #if BRUME_WITH_LIGHTING
     set_lit_taus(f, scene, unit);
 #endif
 #if BRUME_WITH_LAMPS
     brume_lamps_begin(f, scene);
+#endif
+#if BRUME_WITH_EMISSION
+    set_emission(f, scene);
 #endif
     set_light(f, scene);
     return BRUME_OK;

@@ -151,6 +151,41 @@ void several()
     save("name.vdb", named);
 }
 
+// A second grid: of other voxels, in another place, of bad values, empty.
+FloatGrid::Ptr heat_of(int r)
+{
+    auto heat = ball<FloatGrid>(r);
+
+    heat->setName("heat");
+    return heat;
+}
+
+void second_grids()
+{
+    const auto save_two = [](const char *name, const FloatGrid::Ptr &heat) {
+        io::File(folder + "/" + name)
+            .write(GridPtrVec{ball<FloatGrid>(12), heat});
+    };
+    auto moved = heat_of(5), finer = heat_of(9), bad = heat_of(5);
+
+    moved->transform().postTranslate(Vec3d(20, 3, -40));
+    save_two("heat_moved.vdb", moved);
+    finer->transform().preScale(0.5);
+    save_two("heat_finer.vdb", finer);
+    bad->tree().setValue(Coord(3, -5, 20),
+                         std::numeric_limits<float>::quiet_NaN());
+    bad->tree().setValue(Coord(4, -5, 20), -1.0f);
+    save_two("heat_bad.vdb", bad);
+    save_two("heat_none.vdb", heat_of(-1));
+    auto nothing = new_grid<FloatGrid>("density");
+    io::File(folder + "/nothing.vdb").write(GridPtrVec{nothing, heat_of(-1)});
+    io::File(folder + "/heat_only.vdb").write(GridPtrVec{heat_of(9)});
+    auto frustum = heat_of(5);
+    frustum->setTransform(math::Transform::createFrustumTransform(
+        BBoxd(Vec3d(0), Vec3d(100)), 0.5, 10));
+    save_two("heat_frustum.vdb", frustum);
+}
+
 void licences()
 {
     auto g = ball<FloatGrid>(5);
@@ -186,6 +221,7 @@ int main(int count, char **args)
     bad_values();
     transforms();
     several();
+    second_grids();
     licences();
     lattice();
     return 0;

@@ -94,7 +94,7 @@ done
 
 # Parts of lighting, likewise; each with the scenes that do not need it.
 for part in AMBIENT=40 COLOUR=40 CONE=40 CACHE=40 STOCHASTIC=40 SKY=40 TONE=40 \
-    DITHER=40 SHADOW=40 LAMPS=40 FOG=40 SURFACE=40; do
+    DITHER=40 SHADOW=40 LAMPS=40 FOG=40 SURFACE=40 EMISSION=40; do
     try "without_$(echo "${part%=*}" | tr A-Z a-z)" "${part#*=}" gcc -Os \
         -DBRUME_WITH_U8R=0 -DBRUME_WITH_TRILINEAR=0 -DBRUME_WITH_UNIFORM=0 \
         "-DBRUME_WITH_${part%=*}=0"
@@ -114,6 +114,17 @@ hostile_assets()
 }
 check "hostile assets under ASan and UBSan" hostile_assets test_asset
 check "hostile sections for light, too" hostile_assets test_asset_light
+hostile_emission()
+{
+    # shellcheck disable=SC2086
+    gcc -std=c11 -D_POSIX_C_SOURCE=200809L -O1 $sanitize -Icore -Itests \
+        -Itables tests/test_emission.c tests/support/asset_builder.c \
+        tests/support/asset_light.c tests/support/lighting.c \
+        tests/support/lit.c tests/support/scenes.c core/*.c \
+        -o "$out/hostile" -lm && "./$out/hostile" >"$out/hostile.log" 2>&1 ||
+        { tail -n 20 "$out/hostile.log"; return 1; }
+}
+check "hostile second grids, too" hostile_emission
 
 # mono.h has no colour: grey pixels, against those of the full configuration.
 build config_mono gcc -Os -DBRUME_CONFIG='"targets/configs/mono.h"' ||

@@ -64,6 +64,21 @@ filter = trilinear
 END
 cumulus_behind="-150 6"
 
+# Z is up in it.
+cat >"$out/fire.scene" <<END
+$common
+eye = -5,-420,-20
+target = -5,-35,-62
+up = 0,0,1
+fov = 20
+sun = 40 20
+density_scale = 3
+light_density_scale = 1
+filter = trilinear
+emission = blackbody:900,2300,4
+emission_scale = 0.06
+END
+
 value() { sed -n "s/^$1=//p" "$out/metrics"; }
 
 # metrics VOLUME PICTURE OPTION KEY=VALUE...: of the core's picture against
@@ -280,6 +295,48 @@ approximations()
     nearly 8 0.5 "stochastic" filter=stochastic jitter=both noise=white
 }
 
+# glows WHAT KEY=VALUE...: as light, with the volume's emission.
+glows()
+{
+    what=$1
+    shift
+    metrics "$volume_name" pfm \
+        "--display --emission $out/$volume_name.emission" "$@" || :
+    check "$volume_name, $what: rmse $(value rmse) mean $(value mean)" \
+        within 0.5 0.1
+}
+
+emission()
+{
+    # A file of colours: green at low values, then white, then violet.
+    awk 'BEGIN { for (i = 0; i < 256; i++)
+        print i / 255, i < 128 ? 0.5 : 1 - i / 300, (i / 255) ^ 2 }' \
+        >"$out/colours.txt"
+    awk 'BEGIN { for (i = 0; i < 256; i++) print i / 100, i / 100, i / 100 }' \
+        >"$out/greys.txt"
+    for filter in nearest trilinear; do
+        glows "fire, $filter" "filter=$filter"
+        glows "colours of a file, $filter" "filter=$filter" \
+            "emission=$out/colours.txt"
+        glows "thin, $filter" "filter=$filter" emission_scale=0.004 \
+            exposure=4 sun_colour=0.25,0.25,0.25
+        glows "opaque, $filter" "filter=$filter" emission_scale=5 \
+            "emission=$out/colours.txt"
+    done
+    glows "grey" "emission=$out/greys.txt"
+    glows "hot" emission=blackbody:3000,12000,0.5
+    glows "emission alone" density_scale=0 sun_colour=0,0,0
+    glows "albedo 0" albedo=0 background=0.3
+    glows "no scale" emission_scale=0
+    glows "no colours" emission=none
+    glows "with all else" octaves=4 phase=hg:0.6 ambient=gradient \
+        ambient_top=0.2,0.4,0.8 ambient_bottom=0.3,0.2,0.1 haze=900 \
+        exposure=0.7 light=cone light_samples=10 min_density=0.01
+    glows "short steps" step=0.3
+    glows "long steps" step=7.5
+    glows "brighter than 8" exposure=16 emission_scale=1
+}
+
 # What is shown: 8 bits through a curve.
 curves()
 {
@@ -409,5 +466,17 @@ if [ -f "$DATA/openvdb_smoke1.vdb" ]; then
     fog -8 40 0 100 0.0012 "$smoke_behind"
 else
     skip "light on the smoke: openvdb_smoke1.vdb absent"
+fi
+fire=$DATA/embergen_fire/embergen_fire_a_70.vdb
+if [ -f "$fire" ]; then
+    for form in "u8" "u8r --apron"; do
+        # shellcheck disable=SC2086
+        bake fire "$fire" --grid flames --emission temperature --mips \
+            --dump-emission "$out/fire.emission" --format $form
+        volume_name=fire
+        emission
+    done
+else
+    skip "light of the fire: embergen_fire_a_70.vdb absent"
 fi
 finish

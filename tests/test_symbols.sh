@@ -104,4 +104,17 @@ tables_are_generated()
         cmp "$out/brume_tables.c" core/brume_tables.c
 }
 check "core/brume_tables.c is what its generator writes" tables_are_generated
+
+# Line 1 has the generator's arguments.
+black_bodies_are_generated()
+{
+    words=$(sed -n '1s|.* tables/gen_blackbody.c \(.*\) \*/$|\1|p' \
+        tables/blackbody_table.h)
+    # shellcheck disable=SC2086
+    $CC -std=c99 -o "$out/gen" tables/gen_blackbody.c -lm &&
+        "./$out/gen" $words >"$out/blackbody_table.h" &&
+        cmp "$out/blackbody_table.h" tables/blackbody_table.h
+}
+check "tables/blackbody_table.h is what its generator writes" \
+    black_bodies_are_generated
 finish

@@ -64,6 +64,9 @@ static void print_info(const struct volume_file *file)
     printf("mips=%s\n", v->mips != NULL ? "yes" : "no");
     printf("sun_cache=%d\n", v->sun_cache != NULL ? 1 << v->sun_cache[0] : 0);
     printf("sky_visibility=%s\n", v->sky != NULL ? "yes" : "no");
+    printf("emission=%s\n", v->emission != NULL ? "yes" : "no");
+    if (v->emission != NULL)
+        printf("emission_max=%.9g\n", value_of(v->emission_max));
 }
 
 int info_main(int argc, char **argv)

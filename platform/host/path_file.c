@@ -22,6 +22,7 @@ struct entry {
     double value[SCENE_VALUES];
     const struct brume_noise_table *noise_file;
     const struct scene_file_data *file; /* of the key */
+    const struct emission_file *emission_file;
 };
 
 struct path {
@@ -172,6 +173,7 @@ static int read_key(struct reader *r, const char *text)
     e->noise_file = set.noise_file;
     if (scene_keys[key].kind == SCENE_IS_FILE)
         e->file = set.file[key - SCENE_FILE_FIRST];
+    e->emission_file = set.emission_file;
     return 0;
 }
 
@@ -336,7 +338,9 @@ static void set_key(const struct path *path, int key, uint32_t frame,
     memcpy(settings->value[key], all[i].value, sizeof all[i].value);
     if (key == SCENE_NOISE)
         settings->noise_file = all[i].noise_file;
-    if (scene_keys[key].kind == SCENE_IS_FILE)
+    else if (key == SCENE_EMISSION)
+        settings->emission_file = all[i].emission_file;
+    else if (scene_keys[key].kind == SCENE_IS_FILE)
         settings->file[key - SCENE_FILE_FIRST] = all[i].file;
     for (int c = 0; moves && c < 3; c++) {
         double u = ((double)frame - all[i].frame) /

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "noises.h"
+#include "scene_emission.h"
 #include "scene_files.h"
 #include "scene_keys.h"
 
@@ -86,6 +87,10 @@ static int read_value(struct scene_settings *settings, int key,
         return -1;
     if (key == SCENE_NOISE && settings->noise_file != NULL)
         return 0;
+    if (key == SCENE_EMISSION)
+        return scene_emission_read(value, settings->value[key],
+                                   &settings->emission_file, where, err,
+                                   err_size);
     if (scene_keys[key].kind == SCENE_IS_FILE)
         return scene_file_load(key, value,
                                &settings->file[key - SCENE_FILE_FIRST], where,

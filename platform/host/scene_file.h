@@ -13,6 +13,7 @@
 
 struct scene_light;     /* scene_light.h */
 struct scene_file_data; /* scene_files.h */
+struct emission_file;   /* scene_emission.h */
 
 enum scene_key {
     SCENE_SIZE,
@@ -81,6 +82,8 @@ enum scene_key {
     SCENE_SUN_SIZE,
     SCENE_HAZE,
     SCENE_DITHER,
+    SCENE_EMISSION,
+    SCENE_EMISSION_SCALE,
     SCENE_LAMPS,
     SCENE_FOG_DENSITY,
     SCENE_FOG_BASE,
@@ -104,6 +107,7 @@ struct scene_settings {
     bool set[SCENE_KEYS];
     double value[SCENE_KEYS][SCENE_VALUES];
     const struct brume_noise_table *noise_file;          /* or NULL */
+    const struct emission_file *emission_file;           /* or NULL */
     const struct scene_file_data *file[SCENE_FILE_KEYS]; /* or NULL */
     char where[SCENE_KEYS][SCENE_WHERE_SIZE]; /* file:line, cut to fit */
 };

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "noises.h"
+#include "scene_emission.h"
 #include "scene_lamps.h"
 #include "scene_phase.h"
 
@@ -132,6 +133,12 @@ const struct scene_key_info scene_keys[SCENE_KEYS] = {
      "voxels in which the volume fades to 1/e; 0: never (0)"},
     {"dither", SCENE_IS_WORD, 0, 0, "off on",
      "of pixels with few bits, see --pixels (off)"},
+    {"emission", SCENE_IS_EMISSION, 0, 0, scene_emission_words,
+     "colours of codes 0 to 255 of the volume's second grid; FILE: 256 lines r "
+     "g b (none)"},
+    {"emission_scale", SCENE_IS_NUMBER, 0, MAX_Q32, NULL,
+     "extinction per voxel per unit of it (16 across the box at 1/4 of its "
+     "largest value)"},
     {"lamps", SCENE_IS_LAMPS, 0, 0, scene_lamps_words,
      "a lamp per line: X,Y,Z RADIUS SIZE COLOUR [spot X,Y,Z INNER OUTER] "
      "[shadow SAMPLES] (none)"},
@@ -236,6 +243,7 @@ bool scene_key_moves(int key)
     return scene_keys[key].kind != SCENE_IS_WORD &&
            scene_keys[key].kind != SCENE_IS_PHASE &&
            scene_keys[key].kind != SCENE_IS_LAMPS &&
+           scene_keys[key].kind != SCENE_IS_EMISSION &&
            scene_keys[key].kind != SCENE_IS_FILE;
 }
 

@@ -17,9 +17,10 @@ enum scene_kind {
     SCENE_IS_SIZE,
     SCENE_IS_COLOUR,
     SCENE_IS_WORD,
-    SCENE_IS_PHASE, /* a word and its numbers: scene_phase.h */
-    SCENE_IS_LAMPS, /* a file: scene_lamps.h */
-    SCENE_IS_FILE   /* its path: scene_files.h */
+    SCENE_IS_PHASE,    /* a word and its numbers: scene_phase.h */
+    SCENE_IS_EMISSION, /* the same, or a file: scene_emission.h */
+    SCENE_IS_LAMPS,    /* a file: scene_lamps.h */
+    SCENE_IS_FILE      /* its path: scene_files.h */
 };
 
 struct scene_key_info {

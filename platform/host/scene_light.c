@@ -7,6 +7,7 @@
 
 #include "brume_noise_tables.h"
 #include "scene_air.h"
+#include "scene_emission.h"
 #include "scene_files.h"
 #include "scene_keys.h"
 #include "scene_lamps.h"
@@ -49,16 +50,33 @@ static const double *value_of(const struct scene_light *l, int key)
     return l->value[key - SCENE_LIGHT_FIRST];
 }
 
-/* Samples of doubling distance until it passes the box's diagonal. */
-static double samples_across(const struct volume_file *file, double step)
+static double diagonal_of(const struct volume_file *file)
 {
     double square = 0;
     for (int i = 0; i < 3; i++) {
         double side = file->volume.box_max[i] - file->volume.box_min[i] + 1;
         square += side * side;
     }
-    double n = ceil(log2(sqrt(square) / step));
+    return sqrt(square);
+}
+
+/* Samples of doubling distance until it passes the box's diagonal. */
+static double samples_across(const struct volume_file *file, double step)
+{
+    double n = ceil(log2(diagonal_of(file) / step));
     return fmin(fmax(n, 1), scene_keys[SCENE_VISIBILITY_SAMPLES].max);
+}
+
+/* An optical depth of 16 across the box of a quarter of the second grid's
+ * largest value; 1 where it has none. */
+static double scale_across(const struct volume_file *file)
+{
+    const struct brume_number most = file->volume.emission_max;
+    double value = ldexp(most.m, most.e), scale;
+    if (!(value > 0))
+        return 1;
+    scale = 16 / (value / 4 * diagonal_of(file));
+    return fmin(scale, scene_keys[SCENE_EMISSION_SCALE].max);
 }
 
 static void fill_values(const struct scene_settings *s,
@@ -75,6 +93,10 @@ static void fill_values(const struct scene_settings *s,
     if (!s->set[SCENE_VISIBILITY_SAMPLES])
         l->value[SCENE_VISIBILITY_SAMPLES - SCENE_LIGHT_FIRST][0] =
             samples_across(file, value_of(l, SCENE_VISIBILITY_STEP)[0]);
+    if (!s->set[SCENE_EMISSION_SCALE])
+        l->value[SCENE_EMISSION_SCALE - SCENE_LIGHT_FIRST][0] =
+            scale_across(file);
+    l->emission_file = s->emission_file;
     memcpy(l->file, s->file, sizeof l->file);
 }
 
@@ -82,7 +104,7 @@ static void fill_values(const struct scene_settings *s,
 static bool says_something(const struct scene_light *l)
 {
     static const int k_on[] = {SCENE_AMBIENT, SCENE_SKY, SCENE_HAZE,
-                               SCENE_DITHER, SCENE_LAMPS};
+                               SCENE_DITHER, SCENE_LAMPS, SCENE_EMISSION};
     const double *sun = value_of(l, SCENE_SUN_COLOUR);
     for (size_t i = 0; i < sizeof k_on / sizeof k_on[0]; i++)
         if (value_of(l, k_on[i])[0] > 0)
@@ -198,6 +220,18 @@ static int make_lamps(const struct volume_file *file, struct scene_light *l,
 
 /// Scenes ///
 
+static void make_emission(struct scene_light *l)
+{
+    struct brume_lighting *out = &l->lighting;
+    bool glows = scene_emission_colours(value_of(l, SCENE_EMISSION),
+                                        l->emission_file, l->emission);
+    double scale = value_of(l, SCENE_EMISSION_SCALE)[0];
+    if (!glows)
+        return;
+    out->emission_colour = (const uint32_t(*)[3])l->emission;
+    out->emission_scale = (uint64_t)floor(scale * 4294967296.0 + 0.5);
+}
+
 /* What the volume must hold for a word that was said. */
 static int check_sections(const struct scene_settings *s,
                           const struct volume_file *file,
@@ -210,6 +244,12 @@ static int check_sections(const struct scene_settings *s,
         snprintf(err, err_size,
                  "%s: light = cone needs a volume that was baked with --mips",
                  s->where[SCENE_LIGHT]);
+        return -1;
+    }
+    if (value_of(l, SCENE_EMISSION)[0] > 0 && file->volume.emission == NULL) {
+        snprintf(err, err_size,
+                 "%s: emission needs a volume that was baked with --emission",
+                 s->where[SCENE_EMISSION]);
         return -1;
     }
     if (baked && value_of(l, SCENE_AMBIENT)[0] > 0 &&
@@ -244,6 +284,7 @@ int scene_light_apply(const struct scene_settings *settings,
     colour_of(light, SCENE_SUN_COLOUR, out->sun_colour);
     make_ambient(file, light);
     make_sky(light);
+    make_emission(light);
     scene_direction(file, k_up, out->zenith);
     if (make_lamps(file, light, err, err_size) != 0 ||
         scene_air_apply(settings, file, scene, light, err, err_size) != 0)
@@ -264,6 +305,8 @@ bool scene_light_has_colour(const struct scene_light *light)
         grey = grey && is_grey(l->ambient_colour[i]);
     for (uint32_t i = 0; i < l->lamp_count; i++)
         grey = grey && is_grey(l->lamps[i].colour);
+    for (int i = 0; i < 256 && l->emission_colour != NULL; i++)
+        grey = grey && is_grey(l->emission_colour[i]);
     if (l->sky)
         grey = grey && is_grey(l->sky_zenith) && is_grey(l->sky_horizon) &&
                is_grey(l->sky_ground) &&
@@ -285,6 +328,9 @@ void scene_light_print(FILE *to, const struct scene_light *light)
             fputs(data != NULL ? data->path : "none", to);
             break;
         }
+        case SCENE_IS_EMISSION:
+            scene_emission_print(to, v, light->emission_file);
+            break;
         case SCENE_IS_COLOUR:
             for (int c = 0; c < 3; c++) {
                 fputs(c > 0 ? "," : "", to);

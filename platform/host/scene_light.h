@@ -25,6 +25,8 @@ struct scene_light {
     struct brume_surface surface;
     struct brume_sun_map sun_map;
     const struct scene_file_data *file[SCENE_FILE_KEYS]; /* or NULL */
+    uint32_t emission[256][3];
+    const struct emission_file *emission_file; /* or NULL */
     /* of the keys from SCENE_LIGHT_FIRST on, said or by default */
     double value[SCENE_LIGHT_KEYS][SCENE_VALUES];
 };

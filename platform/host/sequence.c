@@ -186,8 +186,9 @@ static bool is_grey(const struct run *r, const struct brume_scene *scene)
     if (r->sequence->over != NULL)
         return false;
     for (int key = 0; path != NULL && key < SCENE_KEYS; key++)
-        if (path_sets(path, key) && (scene_keys[key].kind == SCENE_IS_COLOUR ||
-                                     key == SCENE_SKY || key == SCENE_AMBIENT))
+        if (path_sets(path, key) &&
+            (scene_keys[key].kind == SCENE_IS_COLOUR || key == SCENE_SKY ||
+             key == SCENE_AMBIENT || key == SCENE_EMISSION))
             return false;
     if (scene->lighting != NULL && scene_light_has_colour(&r->light))
         return false;

@@ -47,6 +47,10 @@ int wide_march_rect(enum wide_kernel kernel, const struct brume_frame *frame,
                     unsigned x, unsigned y, unsigned w, unsigned h,
                     struct brume_radiance *out, size_t stride);
 
+/* Do the lanes know all that a frame asks for? Those of others, with emission,
+ * are marched by the scalar core, whatever the kernel. */
+bool wide_can_march(const struct brume_frame *frame);
+
 /* A volume once more, in orders in which a lookup takes one load. Each is in
  * pages that are zero where the volume is empty, and that a host with virtual
  * memory gives no memory until they are written. Per occupied page:

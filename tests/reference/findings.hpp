@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "float_dump.hpp"
 #include "spec_reader.hpp"
 
 namespace reference
@@ -41,6 +42,14 @@ class findings
 // MIPS, SUNC and AMBI against the voxels. Every mean; of points and cells, for
 // each of which rays are followed in small steps, some from all over.
 void check_light(const asset &a, findings &found);
+
+// spec_check_emission.cpp: does the emission of a cell, or its apron, have a
+// code that is not 0? The section EMIT as the converter writes it; and of the
+// values that a dump has.
+bool glows(const asset &a, const ijk &cell);
+void check_emission(const asset &a, findings &found);
+void check_emission_against(const asset &a, const float_dump &dump,
+                            findings &found);
 
 } // namespace reference
 

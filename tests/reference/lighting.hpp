@@ -29,6 +29,8 @@ struct lamp {
     int shadow_samples = 0;
 };
 
+using emission_colours = std::vector<vec3>; // of codes 0 .. 255, or none
+
 struct lighting {
     phase_model phase;
     int octaves;
@@ -44,6 +46,9 @@ struct lighting {
     int visibility_samples;
     double visibility_step;   // voxels
     int sky_directions = 256; // over which sampled visibility is averaged
+
+    emission_colours glow;
+    double emission_scale; // extinction per voxel at a value of 1
 
     bool sky;
     vec3 sky_zenith, sky_horizon, sky_ground, sun_disc;

@@ -24,8 +24,9 @@ static vec3 sun_direction(const scene &s)
 
 // The frame is built in world space, where it is right-handed, and then
 // taken to pool space.
-renderer::renderer(const volume &v, const scene &s)
-    : volume_(v), scene_(s), sun_(v.pool_direction(sun_direction(s))),
+renderer::renderer(const volume &v, const scene &s, const emission *glow)
+    : volume_(v), scene_(s), glow_(s.lit.glow.empty() ? nullptr : glow),
+      sun_(v.pool_direction(sun_direction(s))),
       zenith_(v.pool_direction({0, 1, 0})), sun_light_(v, scene_, sun_),
       sky_light_(v, scene_, zenith_), air_(v, scene_, sun_, zenith_),
       lamp_light_(v, scene_, air_)
@@ -120,11 +121,44 @@ march_result renderer::finish(const ray &r, const ray_sums &sums) const
     const lighting &l = scene_.lit;
     const vec3 light = l.sun_colour * in_scattering(r, sums) +
                        sky_light_.colour_of(sums.sky) + sums.lamps;
-    const vec3 seen = at_most(light * (l.exposure * scene_.albedo), max_light);
+    const vec3 seen =
+        at_most(light * (l.exposure * scene_.albedo) + sums.glow * l.exposure,
+                max_light);
     const double lost = 1 - sums.transmittance;
     const double left = lost > 0 ? haze_share(l, sums.moment / lost) : 1;
     const vec3 colour = seen * left;
     return {colour.x, 1 - left * lost, colour};
+}
+
+// What scatters and what glows at a sample, neither in front of the other: each
+// has what it would lose alone, less half of what both would. False when
+// there is nothing left of the ray.
+bool renderer::add_sample(const vec3 &p, const vec3 &direction, double t,
+                          double light_jitter, double lamp_jitter,
+                          ray_sums &sums) const
+{
+    const scene &s = scene_;
+    const double d = volume_.density(p, s.filter), fog = air_.fog_at(p);
+    const double m = glow_ != nullptr ? glow_->value(p, s.filter) : 0;
+    const bool dense = d > s.min_density, scatters = dense || fog > 0;
+    const double a =
+        std::exp(-(s.density_scale * (dense ? d : 0) + fog) * s.step);
+    const double b = std::exp(-s.lit.emission_scale * m * s.step);
+    const double lost = sums.transmittance * (1 - a) * (1 + b) / 2;
+    const double glowing = sums.transmittance * (1 - b) * (1 + a) / 2;
+    if (!scatters && !(glowing > 0))
+        return true;
+    if (scatters) {
+        add_sun(lost, p, light_jitter, sums);
+        sky_light_.add(p, lost, sums.sky);
+        sums.lamps =
+            sums.lamps + lamp_light_.at(p, direction, lamp_jitter) * lost;
+    }
+    if (glowing > 0)
+        sums.glow = sums.glow + glow_->colour(m, s.lit.glow) * glowing;
+    sums.moment += (lost + glowing) * t;
+    sums.transmittance *= a * b;
+    return sums.transmittance >= s.min_transmittance;
 }
 
 // t_k is computed from k, never accumulated: the lattice does not depend on
@@ -140,23 +174,8 @@ march_result renderer::march(const ray &r, double jitter, double light_jitter,
         const double t = (k + jitter) * scene_.step;
         if (t >= end)
             break;
-        const vec3 p = r.origin + r.direction * t;
-        const double density = volume_.density(p, scene_.filter);
-        const double fog = air_.fog_at(p);
-        const bool is_dense = density > scene_.min_density;
-        if (!is_dense && fog == 0)
-            continue;
-        const double a =
-            std::exp(-(scene_.density_scale * (is_dense ? density : 0) + fog) *
-                     scene_.step);
-        const double lost = sums.transmittance * (1 - a);
-        add_sun(lost, p, light_jitter, sums);
-        sky_light_.add(p, lost, sums.sky);
-        sums.lamps =
-            sums.lamps + lamp_light_.at(p, r.direction, lamp_jitter) * lost;
-        sums.moment += lost * t;
-        sums.transmittance *= a;
-        if (sums.transmittance < scene_.min_transmittance)
+        if (!add_sample(r.origin + r.direction * t, r.direction, t,
+                        light_jitter, lamp_jitter, sums))
             break;
     }
     return finish(r, sums);
@@ -224,6 +243,8 @@ static bool is_coloured(const scene &s)
             grey = grey && is_grey(side);
     for (const lamp &lamp : l.lamps)
         grey = grey && is_grey(lamp.colour);
+    for (const vec3 &colour : l.glow)
+        grey = grey && is_grey(colour);
     return !grey;
 }
 

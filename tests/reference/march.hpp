@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "air.hpp"
+#include "emission.hpp"
 #include "lamps.hpp"
 #include "light.hpp"
 #include "scene.hpp"
@@ -42,8 +43,8 @@ struct march_result {
 class renderer
 {
   public:
-    // Keeps a reference to the volume, a copy of the scene.
-    renderer(const volume &v, const scene &s);
+    // Keeps a reference to the volume, a copy of the scene; `glow` must stay.
+    renderer(const volume &v, const scene &s, const emission *glow = nullptr);
     renderer(const renderer &) = delete;
 
     // The ray through the centre of pixel (x, y) of the whole picture.
@@ -74,18 +75,23 @@ class renderer
         double sun[8] = {};  // A_i
         ambient_sums sky{};  // B_j
         vec3 lamps{0, 0, 0}; // C_c
+        vec3 glow{0, 0, 0};  // E_c
         double moment = 0;   // of lost, over distance
     };
     lattice_range clip(const ray &r, double jitter, double end) const;
     void add_sun(double lost, const vec3 &p, double jitter,
                  ray_sums &sums) const;
     double in_scattering(const ray &r, const ray_sums &sums) const;
+    bool add_sample(const vec3 &p, const vec3 &direction, double t,
+                    double light_jitter, double lamp_jitter,
+                    ray_sums &sums) const;
     march_result finish(const ray &r, const ray_sums &sums) const;
     double jitter_of(int x, int y, channel c) const;
     void render_row(int y, const rectangle &area, picture &out) const;
 
     const volume &volume_;
     const scene scene_;
+    const emission *glow_;                           // or null
     vec3 eye_, forward_, right_, up_, sun_, zenith_; // pool space
     double pixel_;                                   // its side at distance 1
     sun_light sun_light_;

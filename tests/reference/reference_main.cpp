@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -24,6 +25,8 @@ using namespace reference;
 
 struct options {
     std::string volume, scene, output;
+    std::string emission;    // a float dump, or empty
+    double emission_max = 0; // 0: the dump's own
     std::vector<std::string> settings;
     int threads = 0;               // 0: one per processor
     int directions = 0;            // 0: as the scene has it
@@ -46,6 +49,8 @@ void print_help()
            "  -o FILE               linear PFM, grey, or RGB when the"
            " background or\n"
            "                        light has colour\n"
+           "  --emission FILE       the float dump of what glows\n"
+           "  --emission-max V      its value of code 255 (its largest)\n"
            "  --threads N           default: one per processor; does not"
            " change the result\n"
            "  --display             values as shown: `output` applied, 0 to 1\n"
@@ -105,6 +110,10 @@ options parse_options(const std::vector<std::string> &args)
             o.settings.push_back(value());
         else if (arg == "-o")
             o.output = value();
+        else if (arg == "--emission")
+            o.emission = value();
+        else if (arg == "--emission-max")
+            o.emission_max = std::strtod(value().c_str(), nullptr);
         else if (arg == "--threads")
             o.threads = parse_int(value(), 1, 1024);
         else if (arg == "--directions")
@@ -178,10 +187,17 @@ void run(const options &o)
     const int threads = o.threads ? o.threads : processors;
 
     const volume v(read_float_dump(o.volume), s.max_density);
-    picture image = renderer(v, s).render(area, threads);
+    std::unique_ptr<emission> glow;
+    if (!o.emission.empty())
+        glow = std::make_unique<emission>(read_float_dump(o.emission),
+                                          o.emission_max);
+    else if (!s.lit.glow.empty())
+        throw std::runtime_error("emission needs --emission FILE");
+    picture image = renderer(v, s, glow.get()).render(area, threads);
     if (o.step_check) {
         s.step /= 2;
-        print_step_check(image, renderer(v, s).render(area, threads));
+        print_step_check(image,
+                         renderer(v, s, glow.get()).render(area, threads));
     }
     if (o.display || o.bits != 0)
         for (double &value : image.values)

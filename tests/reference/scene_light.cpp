@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "emission.hpp"
 #include "lamps.hpp"
 #include "scene_values.hpp"
 
@@ -186,6 +187,13 @@ const std::vector<scene_key> &light_keys()
          [](scene &s, text v) {
              s.lit.output = static_cast<output_curve>(
                  parse_word(v, {"linear", "srgb", "filmic"}));
+         }},
+        {"emission", "none", no,
+         "none | blackbody:LOW,HIGH,BRIGHTNESS | FILE of 256 colours",
+         [](scene &s, text v) { s.lit.glow = read_emission(v); }},
+        {"emission_scale", "1", no, "extinction per voxel at a value of 1",
+         [](scene &s, text v) {
+             s.lit.emission_scale = parse_in(v, 0, infinity);
          }},
         {"lamps", "none", no, "none, or a file of one lamp per line",
          [](scene &s, text v) {

@@ -193,16 +193,19 @@ bool brick_is_zero(const asset &a, uint32_t brick)
 
 void check_occupancy(const asset &a, findings &found)
 {
-    std::vector<bool> used(a.bricks, false);
+    std::vector<bool> used(a.bricks, false), glowing(a.bricks, false);
     for (size_t i = 0; i < a.cell_count(); i++) {
         const ijk cell = ijk_of(i, a.cells);
-        if (a.occupied(cell))
-            used[a.brick(cell)] = true;
+        if (!a.occupied(cell))
+            continue;
+        used[a.brick(cell)] = true;
+        if (glows(a, cell))
+            glowing[a.brick(cell)] = true;
     }
     for (uint32_t b = 0; b < a.bricks; b++) {
         if (!used[b])
             found.add("unused", "no cell holds brick " + std::to_string(b));
-        if (brick_is_zero(a, b))
+        if (brick_is_zero(a, b) && !glowing[b])
             found.add("zero brick", "brick " + std::to_string(b) +
                                         " stands for an empty cell");
     }
@@ -217,6 +220,9 @@ void check_shared(const asset &a, findings &found)
         if (a.ranged())
             for (int value : a.range(b))
                 key += "," + std::to_string(value);
+        for (int i = 0; a.emission && i < 512; i++)
+            key += static_cast<char>(
+                a.emission_code(b, {i & 7, i >> 3 & 7, i >> 6}));
         const auto [at, fresh] = first.emplace(std::move(key), b);
         if (!fresh)
             found.add("identical", "bricks " + std::to_string(at->second) +
@@ -287,17 +293,22 @@ void check_aprons(const asset &a, findings &found)
 /// Voxels ///
 
 struct voxel_summary {
-    ijk low, high; // the box of the non-zero voxels
+    ijk low, high; // the box of the voxels that are not zero, of both grids
     uint64_t count;
     double sum; // density
 };
 
-void add_voxel(const ijk &v, double density, voxel_summary &s)
+void widen(const ijk &v, voxel_summary &s)
 {
     s.low = {std::min(s.low.x, v.x), std::min(s.low.y, v.y),
              std::min(s.low.z, v.z)};
     s.high = {std::max(s.high.x, v.x), std::max(s.high.y, v.y),
               std::max(s.high.z, v.z)};
+}
+
+void add_voxel(const ijk &v, double density, voxel_summary &s)
+{
+    widen(v, s);
     s.count++;
     s.sum += density;
 }
@@ -311,6 +322,8 @@ voxel_summary summarise(const asset &a)
             const ijk v = cell * 8 + ijk{n & 7, n >> 3 & 7, n >> 6};
             if (a.units_at(v).value != 0)
                 add_voxel(v, a.density(v), s);
+            if (a.emission_at(v) != 0)
+                widen(v, s);
         }
     }
     return s;
@@ -356,10 +369,11 @@ void check_voxels(const asset &a, findings &found)
     if (std::min<uint64_t>(s.count, 0xffffffffU) > a.voxels)
         found.add("voxels", std::to_string(a.voxels) + " of " +
                                 std::to_string(s.count));
-    if ((s.count == 0) != (a.bricks == 0))
+    const bool nothing = s.high.x < 0;
+    if (nothing != (a.bricks == 0))
         found.add("bricks", std::to_string(a.bricks) + " bricks hold " +
                                 std::to_string(s.count) + " voxels");
-    if (s.count == 0)
+    if (nothing)
         return;
     if (!within(s.low, a.box_min, a.box_max) ||
         !within(s.high, a.box_min, a.box_max))
@@ -367,7 +381,8 @@ void check_voxels(const asset &a, findings &found)
                              " lacks some of " + to_text(s.low) + " to " +
                              to_text(s.high));
     check_outer_layer(a, s, found);
-    check_mean(a, s, found);
+    if (s.count > 0)
+        check_mean(a, s, found);
 }
 
 /// Against the voxels before quantisation ///
@@ -375,7 +390,8 @@ void check_voxels(const asset &a, findings &found)
 // Whether this is the nearest code that there is for the density.
 bool well_quantised(const asset &a, const density_units &u, double density)
 {
-    const double in_units = density * 65280 / a.density_max;
+    // Without density there is no unit; 0 is 0.
+    const double in_units = density == 0 ? 0 : density * 65280 / a.density_max;
     const double slack = 1e-9 * 65280;
     // An empty cell holds what rounds to code 0 in u8, else to no unit.
     const code_interval empty = {0, a.ranged() ? 0.5 : 128};
@@ -418,10 +434,12 @@ std::vector<std::string> check_asset(const asset &a)
     check_aprons(a, found);
     check_voxels(a, found);
     check_light(a, found);
+    check_emission(a, found);
     return found.lines();
 }
 
-std::vector<std::string> check_against(const asset &a, const float_dump &dump)
+std::vector<std::string> check_against(const asset &a, const float_dump &dump,
+                                       const float_dump *glow)
 {
     findings found;
     const ijk size = a.size();
@@ -432,17 +450,24 @@ std::vector<std::string> check_against(const asset &a, const float_dump &dump)
     }
     if (dump.origin != origin || dump.world_from_index != a.world_from_index)
         found.add("dump", "has another origin or transform");
-    const voxel_summary s = compare_voxels(a, dump, found);
+    voxel_summary s = compare_voxels(a, dump, found);
+    if (glow != nullptr)
+        check_emission_against(a, *glow, found);
+    for (size_t i = 0; glow != nullptr && i < glow->voxels.size(); i++)
+        if (glow->voxels[i] > 0)
+            widen(ijk_of(i, size), s);
     if (std::min<uint64_t>(s.count, 0xffffffffU) != a.voxels)
         found.add("voxels", std::to_string(a.voxels) + " instead of " +
                                 std::to_string(s.count));
-    if (s.count == 0)
+    if (s.high.x < 0)
         return found.lines();
-    if (!same(s.low, a.box_min) || !same(s.high, a.box_max))
+    if ((glow != nullptr || !a.emission) &&
+        (!same(s.low, a.box_min) || !same(s.high, a.box_max)))
         found.add("box", to_text(a.box_min) + " to " + to_text(a.box_max) +
                              " instead of " + to_text(s.low) + " to " +
                              to_text(s.high));
-    const double mean = s.sum / static_cast<double>(s.count);
+    const double mean =
+        s.count > 0 ? s.sum / static_cast<double>(s.count) : 0;
     if (!(std::fabs(a.density_mean - mean) <= 1e-6 * mean))
         found.add("density_mean", std::to_string(a.density_mean) +
                                       " instead of " + std::to_string(mean));

@@ -21,7 +21,8 @@ std::vector<std::string> check_asset(const asset &a);
 // nearest code of its brick's range, zeros stay zero; and box_min, box_max,
 // voxels and density_mean, which an asset alone confirms only roughly.
 std::vector<std::string> check_against(const asset &a,
-                                       const float_dump &dump);
+                                       const float_dump &dump,
+                                       const float_dump *glow = nullptr);
 
 } // namespace reference
 

@@ -18,16 +18,18 @@ using namespace reference;
 
 const char usage[] =
     "usage: brume-spec-dump IN.brume [-o OUT.float] [--check]\n"
-    "                       [--against ORIGINAL.float]\n\n"
+    "                       [--against ORIGINAL.float\n"
+    "                       [--emission EMISSION.float]]\n\n"
     "  -o FILE         write the decoded voxels as a float dump\n"
     "  --check         print one line per violation of what SPEC.md says\n"
     "                  the converter writes; exit 1 when there is one\n"
     "  --against FILE  likewise, where the asset strays from the dump of\n"
-    "                  the voxels before quantisation\n\n"
+    "                  the voxels before quantisation\n"
+    "  --emission FILE and of those of the second grid\n\n"
     "Exit 2: the file is not an asset that a reader may open.\n";
 
 struct options {
-    std::string input, output, against;
+    std::string input, output, against, emission;
     bool check = false, help = false;
 };
 
@@ -44,6 +46,8 @@ options parse_options(const std::vector<std::string> &args)
             o.output = args[++i];
         else if (arg == "--against" && i + 1 < args.size())
             o.against = args[++i];
+        else if (arg == "--emission" && i + 1 < args.size())
+            o.emission = args[++i];
         else if (arg[0] != '-' && o.input.empty())
             o.input = arg;
         else
@@ -85,9 +89,13 @@ int run(const options &o)
     size_t violations = 0;
     if (o.check)
         violations += print(o.input, check_asset(a));
+    float_dump glow;
+    if (!o.emission.empty())
+        glow = read_float_dump(o.emission);
     if (!o.against.empty())
         violations += print(
-            o.input, check_against(a, read_float_dump(o.against)));
+            o.input, check_against(a, read_float_dump(o.against),
+                                   o.emission.empty() ? nullptr : &glow));
     return violations ? 1 : 0;
 }
 

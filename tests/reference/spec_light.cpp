@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The second reader's view of the sections for light: MIPS, SUNC and AMBI.
+// The second reader's view of the sections for light: MIPS, SUNC, AMBI, EMIT.
 
 #include <cmath>
 
@@ -114,6 +114,39 @@ void asset::read_sky()
 double asset::sky_visibility(const ijk &cell) const
 {
     return bytes_[sky->at + index_of(cell, cells)] / 255.0;
+}
+
+/// EMIT ///
+
+void asset::read_emission()
+{
+    const section *s = find("EMIT");
+    if (!s)
+        return;
+    must(s->bytes == 16 + 512 * uint64_t{bricks},
+         "EMIT: wrong number of bytes");
+    must(u32(s->offset + 8) == 0 && u32(s->offset + 12) == 0,
+         "EMIT: a zero field is not");
+    emission = emission_codes{number(s->offset), s->offset + 16};
+}
+
+int asset::emission_code(uint32_t brick, const ijk &voxel) const
+{
+    return bytes_[emission->at + size_t{512} * brick +
+                  index_of(voxel, {8, 8, 8})];
+}
+
+int asset::emission_at(const ijk &voxel) const
+{
+    const ijk cell = {voxel.x >> 3, voxel.y >> 3, voxel.z >> 3};
+    if (!emission || !inside(cell) || !occupied(cell))
+        return 0;
+    return emission_code(brick(cell), {voxel.x & 7, voxel.y & 7, voxel.z & 7});
+}
+
+double asset::emission_value(const ijk &voxel) const
+{
+    return emission_at(voxel) * emission->value / 255;
 }
 
 } // namespace reference

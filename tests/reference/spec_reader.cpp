@@ -86,6 +86,7 @@ asset::asset(std::vector<uint8_t> bytes) : bytes_(std::move(bytes))
     read_mips();
     read_sun();
     read_sky();
+    read_emission();
 }
 
 void asset::read_ident()

@@ -99,6 +99,12 @@ struct sky_cells {
     size_t at;
 };
 
+// The head of EMIT. `at`: byte of the first code.
+struct emission_codes {
+    double value; // of code 255
+    size_t at;
+};
+
 class asset {
 public:
     // Checks what SPEC.md says must hold; throws std::runtime_error with
@@ -146,6 +152,13 @@ public:
     std::optional<sky_cells> sky;
     double sky_visibility(const ijk &cell) const;
 
+    // Section EMIT, if there is one: codes of a brick's own 8x8x8 voxels.
+    std::optional<emission_codes> emission;
+    int emission_code(uint32_t brick, const ijk &voxel) const;
+    // Anywhere in pool space: 0 outside the pool and in empty cells.
+    int emission_at(const ijk &voxel) const;
+    double emission_value(const ijk &voxel) const;
+
     // Raw bytes, for checks below the level of a voxel.
     const uint8_t *blob() const { return bytes_.data(); }
     size_t blob_size() const { return bytes_.size(); }
@@ -169,6 +182,7 @@ private:
     void read_mips();
     void read_sun();
     void read_sky();
+    void read_emission();
     const section &require(const std::string &id) const;
     uint32_t cell_word(const ijk &cell) const;
     uint32_t u16(size_t at) const;

@@ -348,3 +348,30 @@ uint8_t *asset_add_light(uint8_t *asset, size_t *size,
     asset_seal(p, *size);
     return p;
 }
+
+/// EMIT ///
+
+static uint8_t emission_code(uint32_t brick, uint32_t voxel)
+{
+    uint32_t h = brick * 0x9e3779b1u + voxel * 0x85ebca6bu;
+    h = (h ^ h >> 15) * 0x2c1b3c6du;
+    h ^= h >> 13;
+    return h >> 30 ? (uint8_t)(h >> 8) : 0;
+}
+
+uint8_t *asset_add_emission(uint8_t *asset, size_t *size, uint32_t value_m,
+                            int32_t value_e)
+{
+    uint32_t bricks = asset_get32(asset + BRUME_OFF_BRICKS);
+    uint8_t *p = with_entries(asset, size, 1);
+    p = append(p, size, BRUME_SECTION_EMIT, 16u + (size_t)512 * bricks);
+    uint8_t *out = p + asset_section(p, BRUME_SECTION_EMIT);
+    asset_put32(out, value_m);
+    asset_put32(out + 4, (uint32_t)value_e);
+    for (uint32_t i = 0; i < 512 * bricks; i++)
+        out[16 + i] = emission_code(i / 512, i % 512);
+    asset_put16(p + BRUME_OFF_MINOR, 2);
+    asset_put32(p + BRUME_OFF_SIZE, (uint32_t)*size);
+    asset_seal(p, *size);
+    return p;
+}

@@ -22,6 +22,11 @@ struct asset_light {
 uint8_t *asset_add_light(uint8_t *asset, size_t *size,
                          const struct asset_light *what);
 
+/* Adds EMIT, with codes from a hash of brick and voxel, a quarter of them 0,
+ * and code 255 for value_m * 2^value_e. */
+uint8_t *asset_add_emission(uint8_t *asset, size_t *size, uint32_t value_m,
+                            int32_t value_e);
+
 /* Bytes of a section, 0 when there is none. */
 uint32_t asset_section_bytes(const uint8_t *asset, uint32_t id);
 

@@ -59,6 +59,18 @@ static void set_colours(struct brume_lighting *l, bool colour)
     }
 }
 
+/* From red to blue by code, or all alike. */
+static void set_emission(struct brume_lighting *l, bool colour)
+{
+    static uint32_t s_colours[2][256][3];
+    for (uint32_t i = 0; i < 256; i++)
+        for (uint32_t c = 0; c < 3; c++)
+            s_colours[colour][i][c] =
+                i * ONE / (colour ? 64u + 96u * (c ^ 1u) : 100u);
+    l->emission_colour = (const uint32_t(*)[3])s_colours[colour];
+    l->emission_scale = BRUME_Q32(0.5);
+}
+
 #if BRUME_WITH_LAMPS
 static struct brume_lamp s_lamps[SLOTS][BRUME_MAX_LAMPS];
 static struct brume_clusters s_clusters;
@@ -283,6 +295,8 @@ void test_lighting_fill(struct brume_scene *out,
     if (light->filmic)
         out->output = BRUME_FILMIC;
     set_lamps(l, light, slot, volume);
+    if (light->emission)
+        set_emission(l, light->colour);
 #if BRUME_WITH_CACHE
     if (out->light == BRUME_CACHE &&
         brume_cache_baked(&s_cache[slot], volume) == BRUME_OK) {

@@ -17,6 +17,7 @@ struct test_lighting {
     uint8_t lamps; /* so many; of each the reach is a tenth of the box */
     bool spots;    /* they are, and have shadows */
     uint8_t air;   /* bits: what there is besides the volume */
+    bool emission; /* colours of the second grid; grey without `colour` */
 };
 
 enum test_air { AIR_FOG = 1, AIR_SHAPES = 2, AIR_SURFACE = 4, AIR_SUN_MAP = 8 };

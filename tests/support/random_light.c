@@ -170,6 +170,19 @@ static void light_of(struct brume_scene *s, const struct brume_volume *v,
     s->light_samples = (uint16_t)below(BRUME_MAX_LOG_SAMPLES + 1u);
 }
 
+/* Of volumes that have a second grid, half of the time. */
+static void emission_of(struct brume_lighting *l, const struct brume_volume *v,
+                        bool grey, uint32_t (*below)(uint32_t))
+{
+    static uint32_t s_colours[256][3];
+    if (v->emission == NULL || below(2) == 0)
+        return;
+    for (int i = 0; i < 256; i++)
+        colour_of(s_colours[i], grey, below);
+    l->emission_colour = (const uint32_t(*)[3])s_colours;
+    l->emission_scale = (uint64_t)below(0x7fffffffu) << below(4) * 2u;
+}
+
 /* A few lamps in and around the volume; none in most scenes. */
 static void lamps_of(struct brume_lighting *l, const struct brume_volume *v,
                      bool grey, uint32_t (*below)(uint32_t))
@@ -218,6 +231,7 @@ void random_light_fill(struct brume_scene *out,
     behind_of(l, below);
     light_of(out, volume, below);
     lamps_of(l, volume, grey, below);
+    emission_of(l, volume, grey, below);
     l->cache = &s_cache;
     if (below(3) == 0)
         surface_of(l, out, below);

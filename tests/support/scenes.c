@@ -290,6 +290,14 @@ const struct test_scene test_scenes[] = {
                  .air = AIR_FOG | AIR_SHAPES),
     AIR_SEQUENCE("seq_air_half", 2, BRUME_EMA, 8, BRUME_HALF,
                  .air = AIR_FOG | AIR_SURFACE | AIR_SUN_MAP),
+    LIT("lit_glow", "glow_u8", NEAR, BRUME_LOG, 8, VIEW_FRONT, .octaves = 1,
+        .emission = true),
+    LIT("lit_glow_apron", "glow_u4r_apron", TRI, BRUME_NO_LIGHT, 0, VIEW_FRONT,
+        .colour = true, .emission = true, .filmic = true),
+    LIT("lit_glow_stochastic", "glow_u8", BRUME_STOCHASTIC, BRUME_LOG, 8,
+        VIEW_SUN, .phase = 1, .octaves = 2, .colour = true, .emission = true),
+    LIT("lit_glow_inside", "glow_u8", TRI, BRUME_LOG, 8, VIEW_INSIDE,
+        .octaves = 2, .colour = true, .emission = true),
 };
 
 const int test_scene_count = sizeof test_scenes / sizeof test_scenes[0];

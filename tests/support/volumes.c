@@ -52,6 +52,20 @@ static int add_lit_cloud(struct test_volumes *v, const char *name, int format,
     return add_volume(v, name, asset, size);
 }
 
+/* Without sections for light, and with a second grid of values up to 1/2. */
+static int add_glowing_cloud(struct test_volumes *v, const char *name,
+                             int format, bool apron)
+{
+    static const struct density_cloud cloud = {72, 5};
+    struct asset_spec spec =
+        asset_spec_of(9, 9, 9, format, density_in_cloud, &cloud);
+    size_t size;
+    spec.apron = apron;
+    uint8_t *asset = asset_build(&spec, &size);
+    asset = asset_add_emission(asset, &size, 0x80000000u, -32);
+    return add_volume(v, name, asset, size);
+}
+
 static int add_block(struct test_volumes *v)
 {
     static const struct density_box box = {{4, 4, 4}, {28, 20, 36}, 32768};
@@ -98,6 +112,8 @@ int test_volumes_make(struct test_volumes *volumes, int argc, char **argv)
     bad |= add_cloud(v, "cloud_u4r_apron", BRUME_U4R, true);
     bad |= add_lit_cloud(v, "lit_u8", BRUME_U8, false, 2);
     bad |= add_lit_cloud(v, "lit_u4r_apron", BRUME_U4R, true, 1);
+    bad |= add_glowing_cloud(v, "glow_u8", BRUME_U8, false);
+    bad |= add_glowing_cloud(v, "glow_u4r_apron", BRUME_U4R, true);
     for (int i = 1; i < argc; i++)
         bad |= add_file(v, argv[i]);
     return bad;

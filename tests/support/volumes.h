@@ -14,7 +14,7 @@ struct test_volume {
     uint8_t *asset;
     struct brume_volume volume;
 };
-#define TEST_VOLUMES 16
+#define TEST_VOLUMES 24
 struct test_volumes {
     int count;
     struct test_volume item[TEST_VOLUMES];
