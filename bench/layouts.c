@@ -28,60 +28,13 @@ LANES_INLINE lanes mean_by_32(const lanes four[2], lanes w)
     return (mix_lanes(plane[0], plane[1], wz) + 0x8000u) >> 16;
 }
 
-/* As mix_octets, whose comment says why; codes less 128 come out less 2^31. */
-LANES_INLINE lanes mean_by_16(const lanes four[2], lanes w)
-{
-    const octets_t xs = OCTETS_SPREAD(
-        _mm_set_epi8(12, 12, 12, 12, 8, 8, 8, 8, 4, 4, 4, 4, 0, 0, 0, 0));
-    const octets_t ys = OCTETS_SPREAD(
-        _mm_set_epi8(-1, 13, -1, 13, -1, 9, -1, 9, -1, 5, -1, 5, -1, 1, -1, 1));
-    octets_t wx = OCTETS_LOGIC(xor)(OCTETS(shuffle_epi8)((octets_t)w, xs),
-                                    OCTETS(set1_epi16)(0xff));
-    octets_t wy = OCTETS_LOGIC(xor)(OCTETS(shuffle_epi8)((octets_t)w, ys),
-                                    OCTETS(set1_epi32)(0xffff));
-    wy = OCTETS(add_epi16)(wy, OCTETS(set1_epi32)(0x101));
-    lanes plane[2];
-    for (int n = 0; n < 2; n++) {
-        octets_t v = (octets_t)(four[n] ^ 0x80808080u);
-        octets_t a = OCTETS(srai_epi16)(OCTETS(slli_epi16)(v, 8), 8);
-        octets_t x = OCTETS(add_epi16)(OCTETS(maddubs_epi16)(wx, v), a);
-        plane[n] = (lanes)OCTETS(madd_epi16)(x, wy);
-    }
-    return (mix_lanes(plane[0], plane[1], w >> 16) + 0x80008000u) >> 16;
-}
-
 /// Loads ///
-
-LANES_INLINE int load_pair(const uint8_t *p)
-{
-    uint16_t v;
-    memcpy(&v, p, sizeof v);
-    return v;
-}
 
 LANES_INLINE int load_four(const uint8_t *p)
 {
     uint32_t v;
     memcpy(&v, p, sizeof v);
     return (int)v;
-}
-
-/* Two rows of two bytes each, `row` bytes apart. */
-LANES_INLINE lanes gather_rows(const uint8_t *p, const uint32_t *i,
-                               uint32_t row)
-{
-    __m128i quad[LANES_QUADS];
-    for (int n = 0; n < LANES_QUADS; n++, i += 4) {
-        __m128i v = _mm_cvtsi32_si128(load_pair(p + i[0]));
-        v = _mm_insert_epi16(v, load_pair(p + i[0] + row), 1);
-        v = _mm_insert_epi16(v, load_pair(p + i[1]), 2);
-        v = _mm_insert_epi16(v, load_pair(p + i[1] + row), 3);
-        v = _mm_insert_epi16(v, load_pair(p + i[2]), 4);
-        v = _mm_insert_epi16(v, load_pair(p + i[2] + row), 5);
-        v = _mm_insert_epi16(v, load_pair(p + i[3]), 6);
-        quad[n] = _mm_insert_epi16(v, load_pair(p + i[3] + row), 7);
-    }
-    return lanes_join(quad);
 }
 
 LANES_INLINE lanes gather_fours(const uint8_t *p, const uint32_t *i)
@@ -128,7 +81,7 @@ LANES_INLINE void place_batch(const struct layouts *l, struct batch *b,
 {
     const struct brume_volume *v = l->frame->volume;
     const struct kernel k =
-        KERNEL_OF(BRUME_U8, kind == LAYOUT_APRON, true, false, false);
+        KERNEL_OF(BRUME_U8, HAS_APRON(kind) ? 1u : 0u, true, false, false);
     for (uint32_t g = 0; g < LAYOUT_GROUPS; g++, n += WIDE_LANES) {
         lanes x = lanes_load(l->axis[0] + n), y = lanes_load(l->axis[1] + n);
         lanes z = lanes_load(l->axis[2] + n);
@@ -139,6 +92,8 @@ LANES_INLINE void place_batch(const struct layouts *l, struct batch *b,
             lanes_store(b->at[g], (cell << 9) + voxel);
             lanes_store(b->voxel[g], (cell_number(v, x, y, up) << 9) +
                                          voxel_number(x, y, up, k));
+        } else if (kind == LAYOUT_APRON_PAGES) {
+            lanes_store(b->at[g], cell * BRICK_ELEMENTS(kind) + voxel);
         } else {
             lanes_store(b->at[g], cell);
             lanes_store(b->voxel[g], voxel);
@@ -195,6 +150,7 @@ LANES_INLINE void load_codes(const struct layouts *l, const struct batch *b,
         patch_faces(l, n, four);
         break;
     case LAYOUT_APRON:
+    case LAYOUT_APRON_PAGES:
         four[0] = gather_rows(data, b->at[g], 9);
         four[1] = gather_rows(data + 81, b->at[g], 9);
         break;
@@ -228,7 +184,7 @@ LANES_INLINE lanes hash_batch(const struct layouts *l, const struct batch *b,
         } else {
             load_codes(l, b, g, n, kind, four);
             d = products == PRODUCTS_32 ? mean_by_32(four, w)
-                                        : mean_by_16(four, w);
+                                        : mean_of_planes(four, w);
         }
         hash = (hash << 1 | hash >> 31) ^ d;
     }
@@ -244,7 +200,7 @@ LANES_INLINE lanes run(const struct layouts *l, enum layout kind,
     lanes hash = lanes_of(0);
     for (size_t n = 0; n < l->count; n += LAYOUT_GROUPS * WIDE_LANES) {
         place_batch(l, &b, n, kind);
-        if (kind != LAYOUT_NONE && kind != LAYOUT_QUAD_PAGES)
+        if (kind != LAYOUT_NONE && HAS_WORDS(kind))
             number_batch(l, &b, kind);
         FORGET(b.at);
         FORGET(b.voxel);
@@ -253,11 +209,15 @@ LANES_INLINE lanes run(const struct layouts *l, enum layout kind,
     return hash;
 }
 
-/* The kernel's own lookup; copy: or NULL. */
-LANES_INLINE lanes run_kernel(const struct layouts *l,
-                              const struct wide_copy *copy)
+/* The kernel's own lookup; of copies, that of octets. */
+LANES_INLINE lanes run_kernel(const struct layouts *l, bool copied)
 {
-    const struct kernel k = KERNEL_OF(BRUME_U8, 0, true, false, false);
+    const struct wide_copy *copy = copied ? l->copy : NULL;
+    if (copied && copy == NULL)
+        __builtin_unreachable(); /* as the kernel knows its copies */
+
+    const struct kernel k =
+        KERNEL_OF(BRUME_U8, copied ? 1u : 0u, true, false, false);
     const struct source s = source_of(l->frame, copy, false, k);
     struct lookups batch;
     lanes hash = lanes_of(0);
@@ -291,26 +251,29 @@ OWN_RUN(run_quads_32, LAYOUT_QUADS, PRODUCTS_32)
 OWN_RUN(run_quads_16, LAYOUT_QUADS, PRODUCTS_16)
 OWN_RUN(run_octets_32, LAYOUT_OCTETS, PRODUCTS_32)
 OWN_RUN(run_octets_16, LAYOUT_OCTETS, PRODUCTS_OCTETS)
+OWN_RUN(run_apron_pages_32, LAYOUT_APRON_PAGES, PRODUCTS_32)
+OWN_RUN(run_apron_pages_16, LAYOUT_APRON_PAGES, PRODUCTS_16)
 OWN_RUN(run_quad_pages_32, LAYOUT_QUAD_PAGES, PRODUCTS_32)
 OWN_RUN(run_quad_pages_16, LAYOUT_QUAD_PAGES, PRODUCTS_16)
 
 static lanes run_asset(const struct layouts *l)
 {
-    return run_kernel(l, NULL);
+    return run_kernel(l, false);
 }
 
 static lanes run_octet_pages(const struct layouts *l)
 {
-    return run_kernel(l, l->copy);
+    return run_kernel(l, true);
 }
 
 uint32_t LAYOUTS_RUN(const struct layouts *l, int kind)
 {
     static lanes (*const k_run[LAYOUT_KINDS])(const struct layouts *) = {
-        run_none,       run_asset,     run_bricks_32,     run_bricks_16,
-        run_apron_32,   run_apron_16,  run_quads_32,      run_quads_16,
-        run_octets_32,  run_octets_16, run_quad_pages_32, run_quad_pages_16,
-        run_octet_pages};
+        run_none,          run_asset,          run_bricks_32,
+        run_bricks_16,     run_apron_32,       run_apron_16,
+        run_quads_32,      run_quads_16,       run_octets_32,
+        run_octets_16,     run_apron_pages_32, run_apron_pages_16,
+        run_quad_pages_32, run_quad_pages_16,  run_octet_pages};
     lanes hash = k_run[kind](l);
     uint32_t sum = 0;
     for (unsigned i = 0; i < WIDE_LANES; i++)

@@ -16,16 +16,17 @@
 #include "wide.h"
 
 enum layout {
-    LAYOUT_NONE,       /* positions and weights, and no lookup */
-    LAYOUT_ASSET,      /* the kernel's own lookup, from the asset */
-    LAYOUT_BRICKS,     /* 8^3 as stored; what a neighbour has, voxel by voxel */
-    LAYOUT_APRON,      /* 9^3 voxels */
-    LAYOUT_QUADS,      /* of 2x2 voxels: 8x8x9 */
-    LAYOUT_OCTETS,     /* of 2x2x2 voxels: 8x8x8 */
-    LAYOUT_QUAD_PAGES, /* 8^3 quads a cell, and no words of cells */
-    LAYOUT_OCTET_PAGES /* the kernel's own lookup, from its copy */
+    LAYOUT_NONE,   /* positions and weights, and no lookup */
+    LAYOUT_ASSET,  /* the kernel's own lookup, from the asset */
+    LAYOUT_BRICKS, /* 8^3 as stored; what a neighbour has, voxel by voxel */
+    LAYOUT_APRON,  /* 9^3 voxels */
+    LAYOUT_QUADS,  /* of 2x2 voxels: 8x8x9 */
+    LAYOUT_OCTETS, /* of 2x2x2 voxels: 8x8x8 */
+    LAYOUT_APRON_PAGES, /* 9^3 voxels a cell, and no words of cells */
+    LAYOUT_QUAD_PAGES,  /* 8^3 quads a cell, the same */
+    LAYOUT_OCTET_PAGES  /* the kernel's own lookup, from its copy */
 };
-#define LAYOUTS 8
+#define LAYOUTS 9
 
 /* How eight codes are made one. */
 enum products {
@@ -40,7 +41,7 @@ struct layout_kind {
     enum layout layout;
     enum products products;
 };
-#define LAYOUT_KINDS 13
+#define LAYOUT_KINDS 15
 extern const struct layout_kind layout_kinds[LAYOUT_KINDS];
 
 /* Positions are looked up in batches of so many groups of lanes. */
@@ -55,10 +56,13 @@ struct layouts {
     const uint8_t *data[LAYOUTS];
 };
 
+#define HAS_APRON(l) ((l) == LAYOUT_APRON || (l) == LAYOUT_APRON_PAGES)
+#define HAS_WORDS(l) ((l) != LAYOUT_APRON_PAGES && (l) != LAYOUT_QUAD_PAGES)
+
 /* Elements of a brick and bytes of an element, of those with words. */
 #define BRICK_ELEMENTS(l) \
     ((l) == LAYOUT_BRICKS  ? 512u \
-     : (l) == LAYOUT_APRON ? 729u \
+     : HAS_APRON(l)        ? 729u \
      : (l) == LAYOUT_QUADS ? 576u \
                            : 512u)
 #define ELEMENT_BYTES(l) \

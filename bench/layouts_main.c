@@ -27,6 +27,8 @@ const struct layout_kind layout_kinds[LAYOUT_KINDS] = {
     {"quads", "16", LAYOUT_QUADS, PRODUCTS_16},
     {"octets", "32", LAYOUT_OCTETS, PRODUCTS_32},
     {"octets", "16", LAYOUT_OCTETS, PRODUCTS_OCTETS},
+    {"apron_pages", "32", LAYOUT_APRON_PAGES, PRODUCTS_32},
+    {"apron_pages", "16", LAYOUT_APRON_PAGES, PRODUCTS_16},
     {"quad_pages", "32", LAYOUT_QUAD_PAGES, PRODUCTS_32},
     {"quad_pages", "16", LAYOUT_QUAD_PAGES, PRODUCTS_16},
     {"octet_pages", "16", LAYOUT_OCTET_PAGES, PRODUCTS_OCTETS}};
@@ -177,6 +179,7 @@ static int prepare(struct job *job, const char *path,
     job->layouts.copy = &job->copy;
     job->bricks = v->bricks;
     wide_copy_init(&job->copy, v, WIDE_COPY_MOST);
+    job->copy.octets_most = WIDE_COPY_MOST;
     wide_copy_prepare(&job->copy, &job->frame, NULL);
     if (job->copy.octets == NULL || record(job) != 0 ||
         !layouts_make(&job->layouts, job->bytes)) {

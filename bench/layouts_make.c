@@ -48,8 +48,8 @@ static uint32_t quad_of(const struct block *b, uint32_t x, uint32_t y,
 
 static void put_block(const struct block *b, enum layout layout, uint8_t *to)
 {
-    uint32_t side = layout == LAYOUT_APRON ? 9 : 8;
-    uint32_t high = layout == LAYOUT_APRON || layout == LAYOUT_QUADS ? 9 : 8;
+    uint32_t side = HAS_APRON(layout) ? 9 : 8;
+    uint32_t high = layout == LAYOUT_QUADS ? 9 : side;
     for (uint32_t z = 0; z < high; z++)
         for (uint32_t y = 0; y < side; y++)
             for (uint32_t x = 0; x < side; x++) {
@@ -69,8 +69,9 @@ static void put_block(const struct block *b, enum layout layout, uint8_t *to)
 
 /// Layouts ///
 
-static const enum layout k_made[] = {LAYOUT_BRICKS, LAYOUT_APRON, LAYOUT_QUADS,
-                                     LAYOUT_OCTETS, LAYOUT_QUAD_PAGES};
+static const enum layout k_made[] = {LAYOUT_BRICKS,      LAYOUT_APRON,
+                                     LAYOUT_QUADS,       LAYOUT_OCTETS,
+                                     LAYOUT_APRON_PAGES, LAYOUT_QUAD_PAGES};
 #define MADE (sizeof k_made / sizeof k_made[0])
 
 struct maker {
@@ -110,10 +111,10 @@ static void visit(struct maker *m, const struct brume_volume *v, bool fill)
                     uint32_t brick = m->bricks[layout]++;
                     if (!fill)
                         continue;
-                    if (layout == LAYOUT_QUAD_PAGES)
-                        brick = (uint32_t)n;
-                    else
+                    if (HAS_WORDS(layout))
                         m->word[layout][n] = brick;
+                    else
+                        brick = (uint32_t)n;
                     put_block(&b, layout,
                               m->data[layout] + brick * brick_bytes(layout));
                 }
@@ -131,7 +132,7 @@ bool layouts_make(struct layouts *l, size_t bytes[LAYOUTS])
     visit(&m, v, false);
     for (size_t i = 0; i < MADE; i++) {
         enum layout layout = k_made[i];
-        bool pages = layout == LAYOUT_QUAD_PAGES;
+        bool pages = !HAS_WORDS(layout);
         size_t size =
             (pages ? m.cells : m.bricks[layout]) * brick_bytes(layout);
         m.data[layout] = calloc(size + SLACK, 1);

@@ -334,10 +334,11 @@ LANES_INLINE lanes number_in_cells(lanes x, lanes y, lanes z,
                                    const struct copied *c, struct kernel k)
 {
     lanes cell = (z >> 19) * c->plane + (y >> 19) * c->row;
-    lanes vx = x >> 16 & 7u, vy = y >> 16 & 7u, vz = z >> 16 & 7u;
     if (reads_aprons(k))
-        return cell + (x >> 19) * WIDE_APRON + vx + vy * 9u + vz * 81u;
-    return cell + ((x >> 10 & 0xfffffe00u) | vx | vy << 3 | vz << 6);
+        return cell + (x >> 19) * WIDE_APRON + (x >> 16 & 7u) +
+               (y >> 16 & 7u) * 9u + (z >> 16 & 7u) * 81u;
+    lanes voxel = (x >> 16 & 7u) | (y >> 13 & 56u) | (z >> 10 & 448u);
+    return cell + ((x >> 10 & 0xfffffe00u) | voxel);
 }
 
 LANES_INLINE void want_copied(struct lookups *l, uint32_t g,
