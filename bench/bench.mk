@@ -4,9 +4,16 @@
 
 BENCH_PACKAGES = $(PACKAGES) gnuplot-nox libopenvdb-tools
 BENCH_OBJ = $(patsubst bench/%,$(BUILD)/bench/%.o,$(filter-out \
-	bench/limit.c bench/vtk.cpp,$(wildcard bench/*.c bench/*.cpp)))
+	bench/limit.c bench/layouts% bench/vtk.cpp,$(wildcard bench/*.c bench/*.cpp)))
 BENCH_FAST = -O3 -march=native -ffast-math
 BENCH_PROGRAMS = $(BUILD)/brume-bench $(BUILD)/brume-limit
+# Of x86-64: once for each kind of lanes.
+LAYOUTS = $(filter-out generic,$(WIDE))
+LAYOUTS_OBJ = $(patsubst %,$(BUILD)/bench/%.c.o,layouts_main layouts_make \
+	ours count) $(LAYOUTS:%=$(BUILD)/bench/layouts_%.o)
+ifneq ($(LAYOUTS),)
+BENCH_PROGRAMS += $(BUILD)/brume-layouts
+endif
 VTK = /usr/include/vtk-9.1
 VTK_LIBS = $(patsubst %,-lvtk%-9.1,RenderingVolume RenderingVolumeOpenGL2 \
 	RenderingOpenGL2 RenderingCore CommonDataModel CommonExecutionModel \
@@ -32,6 +39,16 @@ $(BUILD)/brume-bench: $(BENCH_OBJ) $(REFERENCE_OBJ) \
 
 $(BUILD)/brume-limit: $(BUILD)/bench/limit.c.o
 	$(CC) $(LDFLAGS) -o $@ $^ -lpthread
+
+$(BUILD)/brume-layouts: $(LAYOUTS_OBJ) $(filter-out %/main.o,$(HOST_OBJ)) \
+		$(BUILD)/libbrume.a
+	$(CC) $(LDFLAGS) -o $@ $^ -lm -lpthread
+
+$(LAYOUTS:%=$(BUILD)/bench/layouts_%.o): $(BUILD)/bench/layouts_%.o: \
+		bench/layouts.c
+	@mkdir -p $(@D)
+	$(CC) $(CPPFLAGS) -Iplatform/host $(HOST_FLAGS) $(CFLAGS) \
+		$(WIDE_FLAGS_$*) -DLAYOUTS_RUN=layouts_run_$* -MMD -MP -c -o $@ $<
 
 $(BUILD)/brume-vtk: bench/vtk.cpp
 	@mkdir -p $(@D)

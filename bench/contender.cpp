@@ -183,7 +183,7 @@ void contender::set_places()
         throw std::runtime_error("loads alone are known for u8 without apron");
     const lookup_count n = count();
     place_.resize(n.view + n.light);
-    places_ = {&v, place_.data(), 0, 1};
+    places_ = {&v, place_.data(), 0, 1, {}};
     for (const std::string &setting : settings_)
         if (setting.compare(0, 7, "filter=") == 0)
             places_.rows = setting == "filter=trilinear" ? 4 : 1;

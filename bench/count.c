@@ -22,7 +22,12 @@ BRUME_INLINE bool counted(const struct brume_frame *f, uint32_t x, uint32_t y,
 {
     bool found = density_at(f, x, y, z, d, k);
     in_bricks += found;
-    if (wanted) {
+    if (wanted && wanted->axis[0]) {
+        const uint32_t p[3] = {x, y, z};
+        for (int i = 0; i < 3; i++)
+            wanted->axis[i][wanted->count] = p[i];
+        wanted->count++;
+    } else if (wanted) {
         const uint16_t *n = f->volume->cell_count;
         uint32_t cell = ((z >> 19) * n[1] + (y >> 19)) * n[0] + (x >> 19);
         wanted->place[wanted->count++] = cell << 9 | voxel_of(x, y, z, k);

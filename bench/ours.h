@@ -47,7 +47,8 @@ struct ours_places {
     const struct brume_volume *volume;
     uint32_t *place; /* the caller's, room for view + light of the count */
     size_t count;
-    uint32_t rows; /* words of a brick that a lookup reads: 1, or 4 */
+    uint32_t rows;     /* words of a brick that a lookup reads: 1, or 4 */
+    uint32_t *axis[3]; /* or NULL: instead of places, positions, Q16.16 */
 };
 
 void ours_record(const struct ours_job *job, struct ours_places *places);

@@ -7,8 +7,8 @@
 #   BUILD=dir  our programs (build)        RUNS=n  runs of each (7)
 #   DATA=dir   real volumes                BIG=no  leaves the largest cloud out
 #
-# Parts: peers limit scale jitter formats, all of them by default; `update`
-# runs all but formats and renews docs/BENCH.md and docs/bench.
+# Parts: peers limit layouts scale jitter start formats, all of them by default;
+# `update` runs all but formats and renews docs/BENCH.md and docs/bench.
 set -eu
 : "${BUILD:=build}" "${DATA:=../shared/data}" "${RUNS:=7}" "${BIG:=yes}"
 here=$(dirname "$0")
@@ -76,6 +76,10 @@ camera()
         echo eye=1330,140,2162 target=508,343,609 fov=25 sun=-68,36 \
             density_scale=0.05 light_density_scale=0.05
         ;;
+    cloud512)
+        echo eye=600,80,910 target=260,168,260 fov=25 sun=-68,36 \
+            density_scale=0.05 light_density_scale=0.05
+        ;;
     *)
         echo eye=300,40,455 target=130,84,130 fov=25 sun=-68,36 \
             density_scale=0.05 light_density_scale=0.05
@@ -128,6 +132,8 @@ table() { awk -f "$here/table.awk" "$@"; }
 
 . "$here/peers.sh"
 . "$here/limit.sh"
+. "$here/layouts.sh"
+. "$here/start.sh"
 . "$here/scale.sh"
 
 part_formats()
@@ -149,7 +155,7 @@ machine()
 # Puts each $out/PART.md between its markers in docs/BENCH.md.
 update()
 {
-    for part in machine peers limit scale jitter; do
+    for part in machine peers limit layouts scale jitter start; do
         case $part in
         machine) machine ;;
         *) "part_$part" ;;
@@ -171,14 +177,14 @@ update()
     cp "$out"/*.csv "$out"/*.svg docs/bench/
 }
 
-[ $# -gt 0 ] || set -- peers limit scale jitter formats
+[ $# -gt 0 ] || set -- peers limit layouts scale jitter start formats
 for part; do
     case $part in
     --help | -h)
         usage
         exit
         ;;
-    peers | limit | scale | jitter | formats | update) ;;
+    peers | limit | layouts | scale | jitter | start | formats | update) ;;
     *)
         echo "run.sh: there is no part '$part'; --help lists them" >&2
         exit 2

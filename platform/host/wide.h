@@ -61,21 +61,30 @@ bool wide_can_march(const struct brume_frame *frame);
  *                                             of several bricks, or a clamp
  *   octets   8 bytes, pages of 8^3            trilinear: a voxel and its seven
  *                                             neighbours above
+ *   aprons   1 byte, 9^3 a cell               trilinear, u8 of which octets
+ *                                             would take more than octets_most
  */
+#define WIDE_COPIES 5
+#define WIDE_APRON 729u /* bytes of a cell's */
 struct wide_copy {
     const struct brume_volume *volume;
-    size_t most; /* bytes of address space that may still be taken */
-    size_t bytes_size, halves_size, octets_size;
-    const uint8_t *bytes;
+    size_t most;        /* bytes of address space that may still be taken */
+    size_t octets_most; /* bytes of memory that octets of u8 may take */
+    size_t bytes_size, halves_size, aprons_size, octets_size;
+    const uint8_t *bytes, *aprons;
     const uint16_t *halves;
     const uint64_t *octets;
     const uint32_t *ranges; /* of the brick of each cell, else 0 */
-    void *memory[4];
+    void *memory[WIDE_COPIES];
 };
 
-/* Address space that copies may take: of the Disney cloud and its like all of
- * them do; from 5 million cells on there is none. */
-#define WIDE_COPY_MOST ((size_t)1 << 30)
+/* Address space that copies may take: of all but the largest clouds they do;
+ * from 6 million cells on there is none. */
+#define WIDE_COPY_MOST ((size_t)1 << 31)
+
+/* Octets take fewer instructions, aprons an eighth of the bytes: where no cache
+ * holds the octets, aprons are faster, and far sooner made. */
+#define WIDE_OCTETS_MOST ((size_t)1 << 26)
 
 /* No copies yet; `most` bytes of them, 0 for none. */
 void wide_copy_init(struct wide_copy *copy, const struct brume_volume *volume,

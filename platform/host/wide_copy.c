@@ -40,11 +40,12 @@ void wide_copy_init(struct wide_copy *copy, const struct brume_volume *volume,
     memset(copy, 0, sizeof *copy);
     copy->volume = volume;
     copy->most = most;
+    copy->octets_most = WIDE_OCTETS_MOST;
 }
 
 void wide_copy_free(struct wide_copy *copy)
 {
-    for (int i = 0; i < 4; i++)
+    for (int i = 0; i < WIDE_COPIES; i++)
         free(copy->memory[i]);
     wide_copy_init(copy, copy->volume, 0);
 }
@@ -174,6 +175,62 @@ static void make_halves(struct wide_copy *c, struct pool *pool)
     c->halves_size = (size_t)n;
 }
 
+/// Aprons ///
+
+static uint64_t cells_of(const struct brume_volume *v)
+{
+    return (uint64_t)v->cell_count[0] * v->cell_count[1] * v->cell_count[2];
+}
+
+/* The voxels of a brick that the cell `down` below it has too: all of its own,
+ * and of those beside it a face, an edge or a corner. Zeros are not written. */
+static void copy_part(const struct brume_volume *v, const uint8_t *from,
+                      uint8_t *to, const uint32_t down[3])
+{
+    uint32_t end[3], side = v->side;
+    for (int i = 0; i < 3; i++)
+        end[i] = down[i] ? 1 : side;
+    for (uint32_t z = 0; z < end[2]; z++)
+        for (uint32_t y = 0; y < end[1]; y++)
+            for (uint32_t x = 0; x < end[0]; x++) {
+                uint8_t code = from[x + side * (y + side * z)];
+                size_t i = x + 8 * down[0] + 9 * (y + 8 * down[1]) +
+                           81 * (z + 8 * down[2]);
+                if (code != 0)
+                    to[i] = code;
+            }
+}
+
+/* Where bricks have an apron it is taken as it is. */
+static void copy_aprons(struct wide_copy *c, const uint32_t cell[3],
+                        uint32_t brick, void *to)
+{
+    const struct brume_volume *v = c->volume;
+    const uint8_t *from = v->pool + (size_t)brick * v->brick_bytes;
+    for (uint32_t n = 0; n < (v->side == 9 ? 1u : 8u); n++) {
+        const uint32_t down[3] = {n & 1u, n >> 1 & 1u, n >> 2};
+        uint32_t x = cell[0] - down[0], y = cell[1] - down[1];
+        uint32_t z = cell[2] - down[2];
+        if ((x | y | z) >> 31) /* below the pool */
+            continue;
+        size_t number =
+            ((size_t)z * v->cell_count[1] + y) * v->cell_count[0] + x;
+        copy_part(v, from, (uint8_t *)to + number * WIDE_APRON, down);
+    }
+}
+
+static void make_aprons(struct wide_copy *c, struct pool *pool)
+{
+    uint64_t size = cells_of(c->volume) * WIDE_APRON;
+    /* The zero one: as long as a lookup reaches. */
+    uint8_t *to = reserve(c, 4, size + WIDE_APRON, 1);
+    if (to == NULL)
+        return;
+    for_bricks(c, pool, copy_aprons, to);
+    c->aprons = to;
+    c->aprons_size = (size_t)size;
+}
+
 /// Octets ///
 
 /* Those of one brick: of its apron, or of voxels that have all neighbours in
@@ -229,11 +286,6 @@ static void copy_octets(struct wide_copy *c, const uint32_t cell[3],
     }
 }
 
-static uint64_t cells_of(const struct brume_volume *v)
-{
-    return (uint64_t)v->cell_count[0] * v->cell_count[1] * v->cell_count[2];
-}
-
 static void make_octets(struct wide_copy *c, struct pool *pool)
 {
     const struct brume_volume *v = c->volume;
@@ -271,8 +323,11 @@ void wide_copy_prepare(struct wide_copy *copy, const struct brume_frame *frame,
         make_bytes(c, pool);
     if ((trilinear ? clamp || (!u8 && v->side == 8) : !u8) && c->halves == NULL)
         make_halves(c, pool);
-    if (trilinear && !clamp && c->octets == NULL)
+    bool few = !u8 || (size_t)v->bricks * PAGE <= c->octets_most;
+    if (trilinear && !clamp && few && c->octets == NULL)
         make_octets(c, pool);
+    if (trilinear && !clamp && u8 && c->octets == NULL && c->aprons == NULL)
+        make_aprons(c, pool);
     if (trilinear && !clamp && !u8 && c->ranges == NULL)
         make_ranges(c);
 }

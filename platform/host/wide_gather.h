@@ -251,6 +251,87 @@ LANES_INLINE lanes mean_of_octets(const uint64_t *p, const uint32_t *i, lanes w)
 #endif
 }
 
+/// Aprons ///
+
+/*
+ * Bytes of 9^3 voxels a cell: rows are 9 bytes further, slices 81. The mean is
+ * that of the same cube of eight, gathered as two vectors of four bytes: of the
+ * lower and of the upper plane, x first. An eighth of the octets' bytes and a
+ * half more than those of bricks: it is caches that make it the faster one.
+ */
+#if defined(__AVX2__)
+
+LANES_INLINE int two_bytes(const uint8_t *from)
+{
+    uint16_t v;
+    memcpy(&v, from, sizeof v);
+    return v;
+}
+
+/* Two rows of two bytes, `row` bytes apart. */
+LANES_INLINE lanes gather_rows(const uint8_t *p, const uint32_t *i,
+                               uint32_t row)
+{
+    __m128i quad[LANES_QUADS];
+    for (int n = 0; n < LANES_QUADS; n++, i += 4) {
+        __m128i v = _mm_cvtsi32_si128(two_bytes(p + i[0]));
+        v = _mm_insert_epi16(v, two_bytes(p + i[0] + row), 1);
+        v = _mm_insert_epi16(v, two_bytes(p + i[1]), 2);
+        v = _mm_insert_epi16(v, two_bytes(p + i[1] + row), 3);
+        v = _mm_insert_epi16(v, two_bytes(p + i[2]), 4);
+        v = _mm_insert_epi16(v, two_bytes(p + i[2] + row), 5);
+        v = _mm_insert_epi16(v, two_bytes(p + i[3]), 6);
+        quad[n] = _mm_insert_epi16(v, two_bytes(p + i[3] + row), 7);
+    }
+    return lanes_join(quad);
+}
+
+/* As mix_octets, with both planes in lanes of 32 bits, and rounded. */
+LANES_INLINE lanes mean_of_planes(const lanes four[2], lanes w)
+{
+    const octets_t xs = OCTETS_SPREAD(
+        _mm_set_epi8(12, 12, 12, 12, 8, 8, 8, 8, 4, 4, 4, 4, 0, 0, 0, 0));
+    const octets_t ys = OCTETS_SPREAD(
+        _mm_set_epi8(-1, 13, -1, 13, -1, 9, -1, 9, -1, 5, -1, 5, -1, 1, -1, 1));
+    octets_t wx = OCTETS_LOGIC(xor)(OCTETS(shuffle_epi8)((octets_t)w, xs),
+                                    OCTETS(set1_epi16)(0xff));
+    octets_t wy = OCTETS_LOGIC(xor)(OCTETS(shuffle_epi8)((octets_t)w, ys),
+                                    OCTETS(set1_epi32)(0xffff));
+    wy = OCTETS(add_epi16)(wy, OCTETS(set1_epi32)(0x101));
+    lanes plane[2];
+    for (int n = 0; n < 2; n++) {
+        octets_t v = (octets_t)(four[n] ^ 0x80808080u);
+        octets_t a = OCTETS(srai_epi16)(OCTETS(slli_epi16)(v, 8), 8);
+        octets_t x = OCTETS(add_epi16)(OCTETS(maddubs_epi16)(wx, v), a);
+        plane[n] = (lanes)OCTETS(madd_epi16)(x, wy);
+    }
+    lanes sum = (plane[0] << 8) + (plane[1] - plane[0]) * (w >> 16);
+    return (sum + 0x80008000u) >> 16;
+}
+
+#endif
+
+LANES_INLINE lanes mean_of_aprons(const uint8_t *p, const uint32_t *i, lanes w)
+{
+#if defined(__AVX2__)
+    const lanes four[2] = {gather_rows(p, i, 9), gather_rows(p + 81, i, 9)};
+    return mean_of_planes(four, w);
+#else
+    lanes wx = w & 255u, wy = w >> 8 & 255u, wz = w >> 16, plane[2];
+    for (int z = 0; z < 2; z++, p += 81) {
+        lanes row[2];
+        for (int y = 0; y < 2; y++) {
+            lanes a = gather_bytes_at(p + 9 * y, i);
+            lanes b = gather_bytes_at(p + 9 * y + 1, i);
+            row[y] = (a << 8) + (b - a) * wx;
+        }
+        plane[z] = (row[0] << 8) + (row[1] - row[0]) * wy;
+    }
+    lanes sum = (plane[0] << 8) + (plane[1] - plane[0]) * wz;
+    return (sum + 0x8000u) >> 16;
+#endif
+}
+
 /// Packing ///
 
 /* Stores the lanes of m, close together, to `to`, which has room for all. */

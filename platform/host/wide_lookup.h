@@ -28,7 +28,7 @@ struct lookups {
     uint32_t x[LOOKUPS][WIDE_LANES];     /* for trilinear */
     uint32_t y[LOOKUPS][WIDE_LANES];
     uint32_t z[LOOKUPS][WIDE_LANES];
-    uint32_t weight[LOOKUPS][WIDE_LANES]; /* bytes, for octets */
+    uint32_t weight[LOOKUPS][WIDE_LANES]; /* bytes, trilinear */
 } __attribute__((aligned(64)));
 
 #define UNWANTED BRUME_CELL_EMPTY
@@ -262,7 +262,7 @@ LANES_INLINE void look_up_trilinear(struct lookups *l, uint32_t n,
 /* What a lookup by copies reads, taken out of the loops: stores to lookups
  * might change it for all that the compiler knows. */
 struct copied {
-    const uint8_t *bytes;
+    const uint8_t *bytes, *aprons;
     const uint16_t *halves;
     const uint64_t *octets;
     const uint32_t *ranges;
@@ -272,10 +272,15 @@ struct copied {
     lanes half_row, half_plane, half_end;
 };
 
-/* Does a kernel's lookup begin with octets? */
+/* Does a kernel's lookup read aprons, or begin with octets? */
+LANES_INLINE bool reads_aprons(struct kernel k)
+{
+    return k.trilinear && !k.clamp && k.format == BRUME_U8 && k.side == 8;
+}
+
 LANES_INLINE bool reads_octets(struct kernel k)
 {
-    return k.trilinear && !k.clamp;
+    return k.trilinear && !k.clamp && !reads_aprons(k);
 }
 
 LANES_INLINE struct copied copied_of(const struct brume_frame *f,
@@ -287,21 +292,24 @@ LANES_INLINE struct copied copied_of(const struct brume_frame *f,
     bool bytes = !k.trilinear && k.format == BRUME_U8;
     r.bytes = c->bytes;
     r.halves = c->halves;
+    r.aprons = c->aprons;
     r.octets = c->octets;
     r.ranges = c->ranges;
     r.max_density = lanes_of(f->max_density);
     r.half_row = lanes_of(row << 12);
     r.half_plane = lanes_of(plane << 12);
     r.half_end = lanes_of((uint32_t)(bytes ? c->bytes_size : c->halves_size));
-    if (!reads_octets(k)) {
+    if (!reads_octets(k) && !reads_aprons(k)) {
         r.row = r.half_row;
         r.plane = r.half_plane;
         r.end = r.half_end;
         return r;
     }
-    r.row = lanes_of((uint32_t)n[0] << 9);
-    r.plane = lanes_of(((uint32_t)n[0] * n[1]) << 9);
-    r.end = lanes_of((uint32_t)c->octets_size);
+    uint32_t page = reads_aprons(k) ? WIDE_APRON : 512u;
+    r.row = lanes_of(n[0] * page);
+    r.plane = lanes_of((uint32_t)n[0] * n[1] * page);
+    r.end =
+        lanes_of((uint32_t)(reads_aprons(k) ? c->aprons_size : c->octets_size));
     return r;
 }
 
@@ -321,11 +329,14 @@ LANES_INLINE lanes z_in_pages(lanes z, lanes plane)
     return (z >> 8 & 3840u) + (z >> 20) * plane;
 }
 
-/* Octets in pages of 8^3, cell by cell. */
-LANES_INLINE lanes octet_number(lanes x, lanes y, lanes z,
-                                const struct copied *c)
+/* Octets in pages of 8^3, or aprons, cell by cell. */
+LANES_INLINE lanes number_in_cells(lanes x, lanes y, lanes z,
+                                   const struct copied *c, struct kernel k)
 {
     lanes cell = (z >> 19) * c->plane + (y >> 19) * c->row;
+    if (reads_aprons(k))
+        return cell + (x >> 19) * WIDE_APRON + (x >> 16 & 7u) +
+               (y >> 16 & 7u) * 9u + (z >> 16 & 7u) * 81u;
     lanes voxel = (x >> 16 & 7u) | (y >> 13 & 56u) | (z >> 10 & 448u);
     return cell + ((x >> 10 & 0xfffffe00u) | voxel);
 }
@@ -334,8 +345,8 @@ LANES_INLINE void want_copied(struct lookups *l, uint32_t g,
                               const struct copied *c, lanes x, lanes y, lanes z,
                               lanes_mask wanted, struct kernel k)
 {
-    if (reads_octets(k)) {
-        lanes at = octet_number(x, y, z, c);
+    if (reads_octets(k) || reads_aprons(k)) {
+        lanes at = number_in_cells(x, y, z, c, k);
         lanes_store(l->at[g], lanes_select(wanted, at, c->end));
         lanes_store(l->weight[g],
                     (x >> 8 & 255u) | (y & 0xff00u) | (z << 8 & 0xff0000u));
@@ -347,7 +358,7 @@ LANES_INLINE void want_copied(struct lookups *l, uint32_t g,
         lanes_store(l->voxel[g],
                     lanes_select(wanted, lanes_of(0), lanes_of(UNWANTED)));
     }
-    if (k.trilinear && (k.clamp || k.side == 8)) {
+    if (k.trilinear && !reads_aprons(k) && (k.clamp || k.side == 8)) {
         lanes_store(l->x[g], x);
         lanes_store(l->y[g], y);
         lanes_store(l->z[g], z);
@@ -406,6 +417,8 @@ LANES_INLINE lanes density_copied(const struct lookups *l, uint32_t g,
                                   const struct copied *c, struct kernel k)
 {
     lanes d;
+    if (reads_aprons(k))
+        return mean_of_aprons(c->aprons, l->at[g], lanes_load(l->weight[g]));
     if (reads_octets(k))
         return trilinear_copied(l, g, c, k);
     if (k.trilinear) {

@@ -172,9 +172,10 @@ struct march_kernel {
 
 /* A kernel of its own for each lookup and light. How rays move does not depend
  * on whether light is uniform: of each two kernels, the step of the second is
- * that of frames with lighting instead. What it reads are the asset's bricks, or
- * copies (1). Of copies, halves serve u8r and u4r, clamped or not: max_density
- * is then above all densities. */
+ * that of frames with lighting instead. What it reads are the asset's bricks,
+ * or copies (1). Of copies, aprons are those of u8, trilinear and `without an
+ * apron' (0), octets with (1); halves serve u8r and u4r, clamped or not:
+ * max_density is then above all densities. */
 #define NAME(what, format, apron, tri, uni, clamp, copied) \
     what##_##format##_##apron##tri##uni##clamp##copied
 #define KERNEL(format, apron, tri, uni, clamp, copied) \
@@ -212,6 +213,7 @@ struct march_kernel {
     KERNEL(BRUME_U8, 0, 0, uni, 0, 1) \
     KERNEL(BRUME_U8, 0, 0, uni, 1, 1) \
     KERNEL(BRUME_U8R, 0, 0, uni, 1, 1) \
+    KERNEL(BRUME_U8, 0, 1, uni, 0, 1) \
     KERNEL(BRUME_U8, 1, 1, uni, 0, 1) \
     KERNEL(BRUME_U8R, 0, 1, uni, 0, 1) \
     KERNEL(BRUME_U8R, 1, 1, uni, 0, 1) \
@@ -250,7 +252,9 @@ static const struct march_kernel *kernel_of(const struct brume_frame *f,
     if (clamp)
         return c->halves ? copied + (BRUME_U8R << 4) + 5 : direct;
     if (u8)
-        return c->octets ? copied + (BRUME_U8 << 4) + 12 : direct;
+        return c->octets   ? copied + (BRUME_U8 << 4) + 12
+               : c->aprons ? copied + (BRUME_U8 << 4) + 4
+                           : direct;
     if (!c->octets || !c->ranges || (!apron && !c->halves))
         return direct;
     return copied + (BRUME_U8R << 4) + (apron ? 12 : 4);
