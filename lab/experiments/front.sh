@@ -29,32 +29,32 @@ front_size=240x135 front_m4_size=80x45
 #               experiment
 #   light none  the floor of cost: what any light costs more
 front_grid="
-own       near,tri       none,log6,log10,cone10,cache4,uni64 1,2,4,8 none none none full
-own       near,tri       uni16                1,2,4   none  none none   full
-own       near,tri       cone10,cache4        1,2     none  none none   half,quarter
-own       near,tri,stoch log10,cone10,cache4  1,2,4,8 fast  ema  none   full
-own       near           log6,cone6           2,4,8   fast  ema  none   full
-own       near           none                 4,8     fast  ema  none   full
-own       near,tri,stoch cone10,cache4        16      fast  ema  none   full,half
-own       near           cone10,cache4        16      fast  ema  none   quarter
-own       tri            uni16,uni64          1,2,4   fast  ema  none   full
-own       near,tri       cone10,cache4        4       fast  ema  none   half,checker
-own       stoch          cone10,cache4        2,4,8   fast  ema  none   half
-own       stoch          cone10,cache4        4       fast  win8,ema gauss1 full
-own       near,tri       cone10,cache4        2,8     rank1 ema  none   full,half
-own       near,tri       cone10,cache4        2,8     fast  ema  gauss1 full,half
-own       near,tri       cone10,cache4        2,8     fast  win8 none   full
-own       near,tri       cone10,cache4        2,8     fast  ema  none   half,quarter,checker
-own       near,tri       cone10,cache4        2,8     fast  none gauss1 full
-u8,u8r,u4r near,tri      cone10,cache4        1       none  none none   full
-u8,u8r,u4r near,tri      cone10,cache4        2       fast  ema  none   full
-own       near           cone10               4       white,ign,stbn,fastview ema none full"
+own near,tri none,log6,log10,cone10,cache4,uni64 1,2,4,8 none none none full
+own near,tri       uni16               1,2,4   none none none full
+own near,tri       cone10,cache4       1,2     none none none half,quarter
+own near,tri,stoch log10,cone10,cache4 1,2,4,8 fast ema none full
+own near           log6,cone6          2,4,8   fast ema none full
+own near           none                4,8     fast ema none full
+own near,tri,stoch cone10,cache4       16      fast ema none full,half
+own near           cone10,cache4       16      fast ema none quarter
+own tri            uni16,uni64         1,2,4   fast ema none full
+own near,tri       cone10,cache4       4       fast ema none half,checker
+own stoch          cone10,cache4       2,4,8   fast ema none half
+own stoch          cone10,cache4       4       fast win8,ema gauss1 full
+own near,tri       cone10,cache4       2,8     rank1 ema none full,half
+own near,tri       cone10,cache4       2,8     fast ema gauss1 full,half
+own near,tri       cone10,cache4       2,8     fast win8 none full
+own near,tri cone10,cache4 2,8 fast ema none half,quarter,checker
+own near,tri       cone10,cache4       2,8     fast none gauss1 full
+u8,u8r,u4r near,tri cone10,cache4 1 none none none full
+u8,u8r,u4r near,tri cone10,cache4 2 fast ema none full
+own near cone10 4 white,ign,stbn,fastview ema none full"
 # A corner of it, of all kinds.
 [ -z "$QUICK" ] || front_grid="
-own       near,tri       log10,cone10,cache4  2       none  none none   full
-own       near           cone10,cache4        2,8     fast  ema  none   full,half
-own,u4r   stoch          cone10               2       fast  ema  none   full
-own       near           cache4               4       fast  win8 gauss1 full,quarter"
+own near,tri       log10,cone10,cache4 2       none none none full
+own near           cone10,cache4       2,8     fast ema none full,half
+own,u4r stoch cone10 2 fast ema none full
+own near           cache4              4       fast win8 gauss1 full,quarter"
 
 # front_settings VOLUME [LOOKUP-LIGHT | LOOKUP]: one a line, none twice.
 front_settings()

@@ -217,6 +217,23 @@ parts_derive()
                 rmse[$1, "all", "near-31"]
         }' >"$out/parts_sum.csv"
     cut -d, -f 1-3,7,8,14 "$out/parts.csv" >"$out/parts_table.csv"
+    # Of the page: a row for each part, a column for each volume.
+    awk -F, -v OFS=, -v volumes="$parts_volumes" '
+        { rmse[$1, $2 " " $3] = $4 }
+        NR > 1 && !seen[$2, $3]++ { row[++n] = $2 " " $3 }
+        END {
+            v = split(volumes, volume, " ")
+            line = "RMSE"
+            for (k = 1; k <= v; k++)
+                line = line OFS volume[k]
+            print line
+            for (i = 1; i <= n; i++) {
+                line = row[i]
+                for (k = 1; k <= v; k++)
+                    line = line OFS rmse[volume[k], row[i]]
+                print line
+            }
+        }' "$out/parts_table.csv" >"$out/parts_page.csv"
     # Of the chart: where a bar stands, a gap between parts.
     awk -F, -v OFS=, '
         NR == 1 { print "volume", "at", "part", "label", "rmse"; next }
