@@ -200,13 +200,14 @@ front_sequence()
 front_error()
 {
     front_reference=$(front_truth "$1") || return
-    front_settings "$1" "$2" | while read -r front_name; do
+    front_rows=$(front_settings "$1" "$2" | while read -r front_name; do
         front_frames="--frames 0:31 --only 3 --only 31"
         ! front_is_still "$front_name" || front_frames="--frames 0:0"
         # shellcheck disable=SC2086
         front_sequence "$1" "$front_name" $front_frames --flip \
             --reference "truth=$front_reference" || exit
-    done | awk 'NR == 1 { head = $0; print } $0 != head'
+    done) || return
+    echo "$front_rows" | awk 'NR == 1 { head = $0; print } $0 != head'
 }
 
 # Peer and settings in one unit: the peer is tuned NanoVDB, trilinear, a sample
@@ -275,7 +276,7 @@ front_emulate()
     front_names=$(cat)
     front_brume=$(volume "front-$1-$2") || return
     echo "$front_names" | front_pack "$1" "$3" "$front_records" || return
-    qemu-system-arm -M mps2-an386 -icount shift=0,sleep=off -nographic \
+    timeout 600 qemu-system-arm -M mps2-an386 -icount shift=0,sleep=off -nographic \
         -semihosting-config enable=on,target=native \
         -device "loader,file=$front_brume,addr=0x21000000,force-raw=on" \
         -device "loader,file=$front_records,addr=0x21800000,force-raw=on" \

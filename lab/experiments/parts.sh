@@ -174,9 +174,10 @@ parts_run()
     # shellcheck disable=SC2086
     parts_reference=$(reference "front-$parts_volume-$parts_format" \
         "front_$parts_volume" $lab_truth size=$parts_size) || return
-    for parts_each in $(parts_of "$parts_part"); do
+    parts_rows=$(for parts_each in $(parts_of "$parts_part"); do
         parts_one "$parts_each" || exit
-    done | awk 'NR == 1 { head = $0; print } $0 != head'
+    done) || return
+    echo "$parts_rows" | awk 'NR == 1 { head = $0; print } $0 != head'
 }
 
 ## Claims ##
