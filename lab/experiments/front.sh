@@ -276,8 +276,8 @@ front_emulate()
     front_names=$(cat)
     front_brume=$(volume "front-$1-$2") || return
     echo "$front_names" | front_pack "$1" "$3" "$front_records" || return
-    timeout 600 qemu-system-arm -M mps2-an386 -icount shift=0,sleep=off -nographic \
-        -semihosting-config enable=on,target=native \
+    timeout 600 qemu-system-arm -M mps2-an386 -icount shift=0,sleep=off \
+        -nographic -semihosting-config enable=on,target=native \
         -device "loader,file=$front_brume,addr=0x21000000,force-raw=on" \
         -device "loader,file=$front_records,addr=0x21800000,force-raw=on" \
         -kernel "$(front_elf)" >"$front_records.out" </dev/null
