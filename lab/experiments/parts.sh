@@ -174,9 +174,10 @@ parts_run()
     # shellcheck disable=SC2086
     parts_reference=$(reference "front-$parts_volume-$parts_format" \
         "front_$parts_volume" $lab_truth size=$parts_size) || return
-    for parts_each in $(parts_of "$parts_part"); do
+    parts_rows=$(for parts_each in $(parts_of "$parts_part"); do
         parts_one "$parts_each" || exit
-    done | awk 'NR == 1 { head = $0; print } $0 != head'
+    done) || return
+    echo "$parts_rows" | awk 'NR == 1 { head = $0; print } $0 != head'
 }
 
 ## Claims ##
@@ -217,6 +218,23 @@ parts_derive()
                 rmse[$1, "all", "near-31"]
         }' >"$out/parts_sum.csv"
     cut -d, -f 1-3,7,8,14 "$out/parts.csv" >"$out/parts_table.csv"
+    # Of the page: a row for each part, a column for each volume.
+    awk -F, -v OFS=, -v volumes="$parts_volumes" '
+        { rmse[$1, $2 " " $3] = $4 }
+        NR > 1 && !seen[$2, $3]++ { row[++n] = $2 " " $3 }
+        END {
+            v = split(volumes, volume, " ")
+            line = "RMSE"
+            for (k = 1; k <= v; k++)
+                line = line OFS volume[k]
+            print line
+            for (i = 1; i <= n; i++) {
+                line = row[i]
+                for (k = 1; k <= v; k++)
+                    line = line OFS rmse[volume[k], row[i]]
+                print line
+            }
+        }' "$out/parts_table.csv" >"$out/parts_page.csv"
     # Of the chart: where a bar stands, a gap between parts.
     awk -F, -v OFS=, '
         NR == 1 { print "volume", "at", "part", "label", "rmse"; next }
