@@ -130,8 +130,11 @@ ford_run_lookups()
         # shellcheck disable=SC2046
         echo "name=$ford_rung render=scalar asset=$ford_asset $ford_keys" \
             "size=$lab_size" "$(march_keys $(ford_settings "$ford_rung"))"
-    done | "$BUILD/brume-bench" 1 | awk -F, -v OFS=, -v scene="$ford_volume" '
+    done | "$BUILD/brume-bench" 1 | awk -F, -v OFS=, -v scene="$ford_volume" \
+        -v size="$lab_size" '
         NR == 1 {
+            split(size, sides, "x")
+            n = sides[1] * sides[2]
             for (i = 1; i <= NF; i++)
                 at[$i] = i
             print "scene", "rung", "view", "light", "in_bricks"
@@ -139,8 +142,8 @@ ford_run_lookups()
         }
         {
             name = $1 == "adaptive" ? "leap-small" : $1
-            print scene, name, $at["view"] / $at["rays"], \
-                $at["light"] / $at["rays"], $at["in_bricks"] / $at["rays"]
+            print scene, name, $at["view"] / n, $at["light"] / n, \
+                $at["in_bricks"] / n
         }
         END { exit NR < 2 }'
 }
