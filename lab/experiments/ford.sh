@@ -199,6 +199,8 @@ ford_check_volume()
 # renderer's where the core has no such rung.
 ford_derive()
 {
+    # Both volumes are real ones, which may not be there.
+    [ -f "$out/ford_core.csv" ] || return 0
     for ford_table in ford_time ford_lookups; do
         [ -f "$out/$ford_table.csv" ] ||
             echo "scene,rung,ratio,view,light" >"$out/$ford_table.csv"
