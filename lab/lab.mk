@@ -35,8 +35,8 @@ $(BUILD)/brume-lab: $(LAB_OBJ) $(filter-out %/main.o,$(HOST_OBJ)) \
 
 $(BUILD)/lab/obj/%.o: lab/%.c
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) -Iplatform/host -Itables/noise $(HOST_FLAGS) $(CFLAGS) -MMD -MP \
-		-c -o $@ $<
+	$(CC) $(CPPFLAGS) -Iplatform/host -Itables/noise $(HOST_FLAGS) \
+		$(CFLAGS) -MMD -MP -c -o $@ $<
 
 $(BUILD)/brume-papers: $(BUILD)/lab/papers/papers_main.o $(REFERENCE_OBJ)
 	$(CXX) $(LDFLAGS) -o $@ $^ -lpthread

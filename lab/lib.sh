@@ -242,8 +242,9 @@ black()
 # filters and fewer rays, which brume-bench has not; for units that are marked
 # `timed`. Lines NAME [KEY=VALUE]... on stdin, drawn in turns, each turn the
 # frames 1 to 4 of a sequence, by one thread; the first line is drawn by tuned
-# NanoVDB, too, without octaves. Rows name,ratio,ratio_least,ratio_most,ms on stdout: `ratio` is
-# NanoVDB's time at the first line's settings over each one's, in the same turn.
+# NanoVDB, too, without octaves. Rows name,ratio,ratio_least,ratio_most,ms on
+# stdout: `ratio` is NanoVDB's time at the settings of the first line over each
+# one's, in the same turn.
 frame_times()
 {
     times_black=$(black) || return

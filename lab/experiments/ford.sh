@@ -130,8 +130,11 @@ ford_run_lookups()
         # shellcheck disable=SC2046
         echo "name=$ford_rung render=scalar asset=$ford_asset $ford_keys" \
             "size=$lab_size" "$(march_keys $(ford_settings "$ford_rung"))"
-    done | "$BUILD/brume-bench" 1 | awk -F, -v OFS=, -v scene="$ford_volume" '
+    done | "$BUILD/brume-bench" 1 | awk -F, -v OFS=, -v scene="$ford_volume" \
+        -v size="$lab_size" '
         NR == 1 {
+            split(size, sides, "x")
+            n = sides[1] * sides[2]
             for (i = 1; i <= NF; i++)
                 at[$i] = i
             print "scene", "rung", "view", "light", "in_bricks"
@@ -139,8 +142,8 @@ ford_run_lookups()
         }
         {
             name = $1 == "adaptive" ? "leap-small" : $1
-            print scene, name, $at["view"] / $at["rays"], \
-                $at["light"] / $at["rays"], $at["in_bricks"] / $at["rays"]
+            print scene, name, $at["view"] / n, $at["light"] / n, \
+                $at["in_bricks"] / n
         }
         END { exit NR < 2 }'
 }
@@ -196,6 +199,8 @@ ford_check_volume()
 # renderer's where the core has no such rung.
 ford_derive()
 {
+    # Both volumes are real ones, which may not be there.
+    [ -f "$out/ford_core.csv" ] || return 0
     for ford_table in ford_time ford_lookups; do
         [ -f "$out/$ford_table.csv" ] ||
             echo "scene,rung,ratio,view,light" >"$out/$ford_table.csv"
