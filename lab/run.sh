@@ -28,7 +28,9 @@
 #                         X_table NAME: the table of its rows, and X_derive:
 #                         tables out of tables
 #   lab/charts/X*.gp      gnuplot, from tables in dir to dir/*.svg
-#   lab/page/X.md         its section: page.awk has the placeholders
+#   lab/page/X.md         its section: page.awk has the placeholders; or
+#                         X_page: that section on stdout
+#   lab/X/*.sh            more scripts of its own, if any
 set -eu
 : "${BUILD:=build}" "${DATA:=../shared/data}" "${QUICK:=}"
 : "${JOBS:=$(nproc 2>/dev/null || echo 2)}"
@@ -39,7 +41,7 @@ out=docs/lab
 [ -z "$QUICK" ] || out=$lab/tables
 shard=1/1
 
-usage() { sed -n '3,33s/^# \{0,1\}//p' "$0"; }
+usage() { sed -n '3,35s/^# \{0,1\}//p' "$0"; }
 
 die()
 {
@@ -58,7 +60,7 @@ if [ -z "${LAB_INPUTS:-}" ]; then
         cat "$DATA/wdas_cloud_sixteenth.vdb" "$DATA/openvdb_smoke1.vdb" || :
     } 2>/dev/null | sha256sum)
     LAB_INPUTS=$(echo "$LAB_MADE" | cat - "$BUILD/brume-lab" \
-        "$BUILD/brume-papers" | sha256sum)
+        "$BUILD/brume-papers" "$BUILD/brume-atlas" | sha256sum)
     export LAB_INPUTS LAB_REFERENCE LAB_MADE
 fi
 # shellcheck disable=SC2034
@@ -98,6 +100,7 @@ stamp_of()
     {
         echo "$1 $QUICK $inputs $reference_hash"
         cat lab/lib.sh lab/scenes/*.scene
+        cat "lab/${1%%/*}"/*.sh 2>/dev/null || :
         sed '/^## Claims ##$/,$d' "lab/experiments/${1%%/*}.sh"
     } | hash_of
 }
@@ -235,7 +238,12 @@ page()
     done
     set -- lab/page/head.md
     for experiment in $experiments; do
-        set -- "$@" "lab/page/$experiment.md"
+        template=lab/page/$experiment.md
+        if command -v "${experiment}_page" >/dev/null; then
+            template=$lab/$experiment.md
+            "${experiment}_page" >"$template"
+        fi
+        set -- "$@" "$template"
     done
     awk -v dir="$out" -f lab/page.awk "$@" >"$out/README.md.new" || {
         rm -f "$out/README.md.new"
