@@ -10,11 +10,11 @@
  *   brume_asset    checking             brume_resolve  reprojection
  *   brume_lattice  which rays           brume_output   pixels
  *   brume_surface  surface, sun's map   brume_filter   space (brume_filter.h)
- *   brume_camera   rays                 brume_upsample resolution
- *   brume_fog      fog of a frame       brume_show     rows to pixels
- *   brume_lighting lighting of a frame  brume          frames
- *   brume_lamps    which lamps reach    brume_shadow   the shadow outwards
- *                  what
+ *   brume_camera   the view             brume_upsample resolution
+ *   brume_ray      rays                 brume_show     rows to pixels
+ *   brume_fog      fog of a frame       brume          frames
+ *   brume_lighting lighting of a frame  brume_shadow   the shadow outwards
+ *   brume_lamps    which lamps reach what
  */
 #ifndef BRUME_INNER_H
 #define BRUME_INNER_H
@@ -269,6 +269,12 @@ static inline void brume_cross(int32_t out[3], const int32_t a[3],
     }
 }
 
+/* Basis of the camera into frame->eye, ahead, per_x and per_y. */
+int brume_camera_begin(struct brume_frame *frame,
+                       const struct brume_scene *scene);
+
+/// brume_ray.c ///
+
 #define BRUME_RAY_HAS_T \
     (BRUME_WITH_DEPTH || BRUME_WITH_FOG || BRUME_WITH_SURFACE)
 
@@ -295,10 +301,6 @@ struct brume_ray {
     uint32_t noise[3];  /* Q0.16, three more values */
 #endif
 };
-
-/* Basis of the camera into frame->eye, ahead, per_x and per_y. */
-int brume_camera_begin(struct brume_frame *frame,
-                       const struct brume_scene *scene);
 
 /* The middle of pixel (x, y) of the image, of any length, Q1.31. */
 void brume_pixel_direction(const struct brume_frame *frame, uint32_t x,

@@ -199,7 +199,7 @@ LANES_INLINE lanes means_at(const struct brume_volume *v, struct mip *m,
 }
 
 /* The way to a segment's sample. Those that do not fit the word (is_far of
- * brume_camera.c) are returned: they are out of the pool. */
+ * brume_ray.c) are returned: they are out of the pool. */
 LANES_INLINE lanes_mask segment_ways(lanes way[3], const struct brume_frame *f,
                                      const struct light_lanes *light,
                                      struct brume_segment s)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The rays of a tile in lanes: brume_ray_begin of core/brume_camera.c and the
+ * The rays of a tile in lanes: brume_ray_begin of core/brume_ray.c and the
  * noises of core/brume_noise.c, step by step. Where the core divides words,
  * doubles do: of two words below 2^32 they give the quotient's floor exactly.
  */
