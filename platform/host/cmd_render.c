@@ -171,8 +171,6 @@ static bool takes_value(const char *name)
 
 static int read_option(struct options *o, const char *name, const char *value)
 {
-    char err[512];
-    int bad = 0;
     if (!takes_value(name))
         return usage("unknown option ", name);
     if (value == NULL)
@@ -193,13 +191,9 @@ static int read_option(struct options *o, const char *name, const char *value)
         o->sequence.over = value;
     else if (strcmp(name, "--path") == 0)
         o->path = value;
-    else if (strcmp(name, "--scene") == 0)
-        bad = scene_read(&o->settings, value, err, sizeof err);
     else
-        bad = scene_set(&o->settings, value, "--set", err, sizeof err);
-    if (bad)
-        fprintf(stderr, "brume render: %s\n", err);
-    return bad ? 3 : 0;
+        return scene_option("render", &o->settings, name, value);
+    return 0;
 }
 
 /* One argument, or an option and its value: how many there were is added to

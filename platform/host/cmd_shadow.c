@@ -101,17 +101,6 @@ static const char **path_of(struct options *o, const char *name)
                                             : NULL;
 }
 
-static int read_scene(struct options *o, const char *name, const char *value)
-{
-    char err[512];
-    int bad = strcmp(name, "--scene") == 0
-                  ? scene_read(&o->settings, value, err, sizeof err)
-                  : scene_set(&o->settings, value, "--set", err, sizeof err);
-    if (bad)
-        fprintf(stderr, "brume shadow: %s\n", err);
-    return bad ? 3 : 0;
-}
-
 static bool takes_value(const char *name)
 {
     static const char *const k_names[] = {
@@ -148,7 +137,7 @@ static int read_option(struct options *o, const char *name, const char *value)
         o->has_rise = true;
         return read_number(name, value, &o->place.rise);
     }
-    return read_scene(o, name, value);
+    return scene_option("shadow", &o->settings, name, value);
 }
 
 static int check_options(const struct options *o)

@@ -186,17 +186,6 @@ static const char **path_of(struct options *o, const char *name)
                                             : NULL;
 }
 
-static int read_scene(struct options *o, const char *name, const char *value)
-{
-    char err[512];
-    int bad = strcmp(name, "--scene") == 0
-                  ? scene_read(&o->settings, value, err, sizeof err)
-                  : scene_set(&o->settings, value, "--set", err, sizeof err);
-    if (bad)
-        fprintf(stderr, "brume surface: %s\n", err);
-    return bad ? 3 : 0;
-}
-
 static bool takes_value(const char *name)
 {
     static const char *const k_names[] = {
@@ -236,7 +225,7 @@ static int read_value(struct options *o, const char *name, const char *value)
     if (strcmp(name, "--threads") == 0)
         return read_count(name, POOL_MAX, value, &o->threads);
     if (strcmp(name, "--scene") == 0 || strcmp(name, "--set") == 0)
-        return read_scene(o, name, value);
+        return scene_option("surface", &o->settings, name, value);
     return read_number(o, name, value);
 }
 

@@ -178,3 +178,15 @@ int scene_fill(struct scene_settings *settings, const char *text, char *err,
     }
     return 0;
 }
+
+int scene_option(const char *command, struct scene_settings *settings,
+                 const char *name, const char *value)
+{
+    char err[512];
+    int bad = strcmp(name, "--scene") == 0
+                  ? scene_read(settings, value, err, sizeof err)
+                  : scene_set(settings, value, "--set", err, sizeof err);
+    if (bad)
+        fprintf(stderr, "brume %s: %s\n", command, err);
+    return bad ? 3 : 0;
+}

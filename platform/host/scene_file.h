@@ -112,6 +112,11 @@ struct scene_settings {
     char where[SCENE_KEYS][SCENE_WHERE_SIZE]; /* file:line, cut to fit */
 };
 
+/* Option --scene FILE or --set KEY=VALUE of `brume COMMAND`: 0, or the exit
+ * status 3 after a line on stderr. */
+int scene_option(const char *command, struct scene_settings *settings,
+                 const char *name, const char *value);
+
 /* One `key = value`; `where` is for messages. */
 int scene_set(struct scene_settings *settings, const char *text,
               const char *where, char *err, size_t err_size);
