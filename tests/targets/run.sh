@@ -68,7 +68,7 @@ prepare()
     . tests/volumes.sh
     "$BUILD/tests/hash_scenes" --write "$out/volumes"
     for word in block_u8 wdas1_u8 wdas_u8 smoke_u4r wdas_u4r cloud_u8 lit_u8 \
-        lit_u4r_apron; do
+        lit_u4r_apron glow_u8 glow_u4r_apron; do
         [ ! -f "$out/volumes/$word.brume" ] ||
             echo "$word $(realpath "$out/volumes/$word.brume")"
         for volume in $volumes; do
