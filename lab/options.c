@@ -243,10 +243,10 @@ static int read_option(struct lab_options *o, const char *name,
 static bool takes_value(const char *name)
 {
     static const char *const names[] = {
-        "--scene",  "--set",     "--frames", "--reference", "--region",
-        "--kernel", "--column",  "--path",   "--mean",      "--picture",
-        "--from",   "--threads", "--pixels", "--only",      "--cycle",
-        "--spectrum"};
+        "--scene",  "--set",     "--frames", "--reference",
+        "--region", "--kernel",  "--column", "--path",
+        "--mean",   "--picture", "--from",   "--threads",
+        "--pixels", "--only",    "--cycle",  "--spectrum"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (strcmp(name, names[i]) == 0)
             return true;

@@ -13,9 +13,10 @@
 
 #define SIDE 24
 #define RAYS (SIDE * SIDE)
-#define ROUND 16  /* frames that making one set of codes takes */
-#define MOVING 96 /* frames of a moving sun, then as many at rest as it takes \
-                   */
+#define ROUND 16 /* frames that making one set of codes takes */
+#define MOVING \
+    96 /* frames of a moving sun, then as many at rest as it takes \
+        */
 #define FRAMES (MOVING + 3 * ROUND)
 
 static struct brume_frame frame;

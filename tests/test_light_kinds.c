@@ -25,7 +25,7 @@ static struct brume_radiance first[RAYS], second[RAYS];
  * light steps. */
 static void segment_of(int i, int n, double *middle, double *length)
 {
-    static const double k_bound[] = {1,  4,  8,  12,  16,  24,  32,  48, 64,
+    static const double k_bound[] = {1,  4,   8,   12,  16,  24,  32,  48,  64,
                                      96, 128, 192, 256, 384, 512, 768, 1024};
     double low = k_bound[i], high = k_bound[i + 1];
     if (i >= 2 && i == n - 1)

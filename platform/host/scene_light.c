@@ -103,8 +103,8 @@ static void fill_values(const struct scene_settings *s,
 /* Do they say more than a scene without them? */
 static bool says_something(const struct scene_light *l)
 {
-    static const int k_on[] = {SCENE_AMBIENT, SCENE_SKY, SCENE_HAZE,
-                               SCENE_DITHER, SCENE_LAMPS, SCENE_EMISSION};
+    static const int k_on[] = {SCENE_AMBIENT, SCENE_SKY,   SCENE_HAZE,
+                               SCENE_DITHER,  SCENE_LAMPS, SCENE_EMISSION};
     const double *sun = value_of(l, SCENE_SUN_COLOUR);
     for (size_t i = 0; i < sizeof k_on / sizeof k_on[0]; i++)
         if (value_of(l, k_on[i])[0] > 0)
