@@ -493,7 +493,7 @@ test_threads()
 
 info_names="name format apron bytes cells occupied_cells bricks pool_bytes \
 voxels box_voxels box_world origin voxel_size density_max density_mean \
-mips sun_cache sky_visibility"
+mips sun_cache sky_visibility emission"
 
 has_line()
 {
