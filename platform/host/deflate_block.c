@@ -106,14 +106,15 @@ static int merge_level(uint32_t *weight, int items, const uint32_t *freq,
 /* Optimal code lengths of at most `limit` bits (Larmore and Hirschberg's
  * package-merge). Fewer than two symbols in use would make an incomplete
  * code, which some decoders refuse, so unused ones are added. */
-static void build_lengths(uint32_t *freq, int count, int limit, uint8_t *length)
+static void build_lengths(uint32_t *freq, int count, int limit,
+                          uint16_t *length)
 {
     bool is_package[15][2 * LITERALS];
     uint32_t weight[2 * LITERALS];
     uint16_t order[LITERALS];
     int used, items = 0, take;
 
-    memset(length, 0, (size_t)count);
+    memset(length, 0, (size_t)count * sizeof *length);
     used = sort_symbols(freq, count, order);
     for (int s = 0; used < 2; s++)
         if (freq[s] == 0) {
@@ -168,7 +169,8 @@ static unsigned distance_symbol(const struct deflate_block *b,
     return b->distance_symbol[x < 256 ? x : 256 + (x >> 7)];
 }
 
-static unsigned last_used(const uint8_t *length, unsigned count, unsigned least)
+static unsigned last_used(const uint16_t *length, unsigned count,
+                          unsigned least)
 {
     while (count > least && length[count - 1] == 0)
         count--;
@@ -215,15 +217,15 @@ static void build_header(struct deflate_block *b)
 {
     struct block_header *h = &b->header;
     uint32_t freq[LENGTH_CODES] = {0};
-    uint8_t all[LITERALS + DISTANCES];
+    uint16_t all[LITERALS + DISTANCES];
     unsigned total;
 
     h->runs = 0;
     h->literals = last_used(b->literal.length, LITERALS, 257);
     h->distances = last_used(b->distance.length, DISTANCES, 1);
     total = h->literals + h->distances;
-    memcpy(all, b->literal.length, h->literals);
-    memcpy(all + h->literals, b->distance.length, h->distances);
+    memcpy(all, b->literal.length, h->literals * sizeof *all);
+    memcpy(all + h->literals, b->distance.length, h->distances * sizeof *all);
     for (unsigned i = 0, n; i < total; i += n) {
         for (n = 1; i + n < total && all[i + n] == all[i];)
             n++;
@@ -387,7 +389,8 @@ void deflate_block_init(struct deflate_block *b, const uint8_t *src,
         }
     for (int s = 0; s < LITERALS + 2; s++)
         t->length[s] = s < 144 ? 8 : s < 256 ? 9 : s < 280 ? 7 : 8;
-    memset(b->fixed_distance.length, 5, DISTANCES);
+    for (int s = 0; s < DISTANCES; s++)
+        b->fixed_distance.length[s] = 5;
     assign_codes(t, LITERALS + 2);
     assign_codes(&b->fixed_distance, DISTANCES);
 }

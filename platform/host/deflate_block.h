@@ -31,10 +31,16 @@ struct bit_writer {
 };
 
 /* One Huffman code: the codes are bit-reversed, ready for put_bits. The fixed
- * code has two symbols that are never used. */
+ * code has two symbols that are never used.
+ *
+ * A length is as wide as a code for the sake of GCC 12 on AArch64: with a byte,
+ * its ivopts makes the address of code[s] of twice that of length[s], less that
+ * of the table. The null pointer that is left as base counts as memory of no
+ * one else, assign_codes as a function that stores nothing, and calls of it are
+ * dropped. With one width both are one pointer and two offsets. */
 struct code_table {
     uint16_t code[DEFLATE_LITERALS + 2];
-    uint8_t length[DEFLATE_LITERALS + 2];
+    uint16_t length[DEFLATE_LITERALS + 2];
 };
 
 /* The run-length coded code lengths of a dynamic block (3.2.7). */
