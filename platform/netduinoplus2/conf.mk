@@ -3,7 +3,9 @@ BOARD = netduinoplus2
 TARGET_CPU = cortex-m4
 TARGET_FLASH = 1048576
 TARGET_RAM = 131072
-TARGET_ASSETS_MAX = 983040
+TARGET_ASSETS_MAX = 950272
+# Fewer clusters of lamps, which cannot be seen, fit this board's memory.
+TARGET_DEFINES = -DBRUME_CLUSTER_SIDE=4 -DBRUME_CLUSTER_SLICES=2
 TARGET_STATE_BYTES = 57344
 include platform/cortexm/cortexm.mk
 DEMO_SRC = platform/netduinoplus2/demo.c platform/demo/demo.c

@@ -72,7 +72,7 @@ static void set_emission(struct brume_lighting *l, bool colour)
 }
 
 #if BRUME_WITH_LAMPS
-static struct brume_lamp s_lamps[SLOTS][BRUME_MAX_LAMPS];
+static struct brume_lamp s_lamps[BRUME_MAX_LAMPS];
 static struct brume_clusters s_clusters;
 
 /* The radius, Q16.16, of a sphere of a tenth of the box's volume; in whole
@@ -123,23 +123,23 @@ static void set_lamp(struct brume_lamp *p, const struct brume_volume *v,
 }
 
 static void set_lamps(struct brume_lighting *l,
-                      const struct test_lighting *light, unsigned slot,
+                      const struct test_lighting *light,
                       const struct brume_volume *v)
 {
     uint32_t seed = 1;
     l->lamp_count = light->lamps;
-    l->lamps = s_lamps[slot];
+    l->lamps = s_lamps;
     l->clusters = &s_clusters;
     for (uint32_t i = 0; i < light->lamps && i < BRUME_MAX_LAMPS; i++)
-        set_lamp(&s_lamps[slot][i], v, light, &seed);
+        set_lamp(&s_lamps[i], v, light, &seed);
 }
 #else
 static void set_lamps(struct brume_lighting *l,
-                      const struct test_lighting *light, unsigned slot,
+                      const struct test_lighting *light,
                       const struct brume_volume *v)
 {
     l->lamp_count = light->lamps; /* refused */
-    (void)slot, (void)v;
+    (void)v;
 }
 #endif
 
@@ -294,7 +294,7 @@ void test_lighting_fill(struct brume_scene *out,
     l->exposure = light->filmic ? ONE / 2 : 0;
     if (light->filmic)
         out->output = BRUME_FILMIC;
-    set_lamps(l, light, slot, volume);
+    set_lamps(l, light, volume);
     if (light->emission)
         set_emission(l, light->colour);
 #if BRUME_WITH_CACHE

@@ -32,7 +32,7 @@ enum test_air { AIR_FOG = 1, AIR_SHAPES = 2, AIR_SURFACE = 4, AIR_SUN_MAP = 8 };
 
 /* Points a scene at that lighting, which lives on, number `slot` < 40 of its
  * kind: a slot always holds the same. Surfaces, of images up to 48x36, and the
- * clusters of lamps are shared: one frame at a time. `volume` may have a
+ * lamps and their clusters are shared: one frame at a time. `volume` may have a
  * cache. */
 void test_lighting_fill(struct brume_scene *out,
                         const struct test_lighting *light, unsigned slot,

@@ -252,11 +252,13 @@ static int draw_sequence(const struct test_scene *t, uint64_t count[4],
     int error = brume_state_init(state_memory(), sizeof s_state);
     for (unsigned i = 0; i < test_scene_frames(t) && !error; i++) {
         test_scene_frame(&s_scene, t, &s_volume, i);
+        target_stack_paint();
         uint64_t start = target_instructions();
         error = brume_begin_frame(&s_frame, &s_volume, &s_scene);
         *begin = target_instructions() - start;
         if (!error)
             error = draw_frame(count);
+        measure_stack();
     }
     return error;
 }
@@ -276,10 +278,8 @@ static int run_sequence(const struct test_scene *t,
     int error = open_volume(t->volume, asset);
     if (!error && (!test_scene_supported(t) || !fits(t)))
         return 0;
-    target_stack_paint();
     if (!error)
         error = draw_sequence(t, count, &begin);
-    measure_stack();
     if (error) {
         write_line("error ", t->name, " ");
         write_line(brume_error_text(error), "", "\n");
