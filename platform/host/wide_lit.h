@@ -10,10 +10,7 @@
 
 #include "brume_ambient.h"
 #include "brume_sun.h"
-#include "wide_patch.h"
-
-/* Called by every kernel: one of each is enough. */
-#define LANES_CALL static __attribute__((noinline))
+#include "wide_things.h"
 
 /// Queue ///
 
@@ -94,6 +91,8 @@ LANES_CALL void add_octaves(const struct brume_frame *f, struct patch *b,
                             uint32_t at, uint32_t n, lanes sum)
 {
     lanes lost = lanes_load(b->queue.lost + at);
+    if (f->lit.sun_map != NULL)
+        lost = in_sun(f, &b->queue, at, n, lost);
     for (uint32_t i = 0; i < f->lit.octaves; i++)
         add_to_rays(
             b->sun[i], &b->queue, at, n,

@@ -9,6 +9,9 @@
 #include "wide_lookup.h"
 #include "wide_rays.h"
 
+/* Called by every kernel: one of each is enough. */
+#define LANES_CALL static __attribute__((noinline))
+
 #define TILE_WIDTH 4u
 #define TILE_HEIGHT (WIDE_LANES / TILE_WIDTH)
 #define PATCH_WIDTH 16u
