@@ -90,8 +90,7 @@ static bool same(enum wide_kernel kernel, const struct wide_copy *copy,
  * this, frames that fell back to the core would equal it. */
 static bool is_marched_where_due(const struct brume_frame *f)
 {
-    bool left = f->lit.fog.on || f->lit.clusters != NULL || f->lit.emits;
-    return wide_can_march(f) == !left;
+    return wide_can_march(f) == (!f->lit.fog.on && !f->lit.emits);
 }
 
 /// Golden scenes ///
