@@ -12,11 +12,11 @@
 #include <string.h>
 
 #include "brume_inner.h"
+#include "pool.h"
 #include "support/asset_builder.h"
 #include "support/random_light.h"
 #include "support/volumes.h"
 #include "tap.h"
-#include "pool.h"
 #include "wide.h"
 
 #define RANDOM_SCENES 10000
@@ -86,11 +86,11 @@ static bool same(enum wide_kernel kernel, const struct wide_copy *copy,
     return good;
 }
 
-/* Does what the lanes are said to know decide who marches the frame? Without
- * this, frames that fell back to the core would equal it. */
+/* Do the lanes march all frames but those with fog? One that fell back to the
+ * core would equal it, whatever the lanes do. */
 static bool is_marched_where_due(const struct brume_frame *f)
 {
-    return wide_can_march(f) == (!f->lit.fog.on && !f->lit.emits);
+    return wide_can_march(f) == !f->lit.fog.on;
 }
 
 /// Golden scenes ///

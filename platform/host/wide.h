@@ -44,7 +44,7 @@ int wide_march_rect(enum wide_kernel kernel, const struct brume_frame *frame,
                     struct brume_radiance *out, size_t stride);
 
 /* Do the lanes know all that a frame asks for? Those of others are marched by
- * the scalar core, whatever the kernel: frames with fog or emission. */
+ * the scalar core, whatever the kernel: frames with fog. */
 bool wide_can_march(const struct brume_frame *frame);
 
 /* A volume once more, in orders in which a lookup takes one load. Each is in

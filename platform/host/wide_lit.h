@@ -347,8 +347,10 @@ LANES_INLINE void begin_lit(const struct brume_frame *f, struct patch *b)
 LANES_CALL void clear_lit(struct patch *b, uint32_t ray)
 {
     lanes_store(b->lit.count + ray, lanes_of(0));
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < 3; c++) {
         lanes_store(b->lit.lamp[c] + ray, lanes_of(0));
+        lanes_store(b->lit.glow[c] + ray, lanes_of(0));
+    }
     for (int j = 0; j < 6; j++)
         lanes_store(b->lit.sky[j] + ray, lanes_of(0));
 }
@@ -378,8 +380,10 @@ LANES_CALL void finish_lit(const struct brume_frame *f, const struct patch *b,
         g.sun[i] = b->sun[i][ray];
     for (int j = 0; j < 6; j++)
         g.sky[j] = b->lit.sky[j][ray];
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < 3; c++) {
         g.lamp[c] = b->lit.lamp[c][ray];
+        g.glow[c] = b->lit.glow[c][ray];
+    }
     brume_lit_finish(f, &g, unit, b->transmittance[ray], out);
 }
 

@@ -50,7 +50,8 @@ struct lit_rays {
     uint32_t noise[3] ROOM(PATCH);         /* of stochastic lookups */
     uint32_t count ROOM(PATCH);            /* lit samples */
     uint32_t sky[6] ROOM(PATCH);           /* B_j of docs/light.md, Q3.29 */
-    uint32_t lamp[3] ROOM(PATCH);          /* C_c */
+    uint32_t lamp[3] ROOM(PATCH);          /* C_c, Q3.29 */
+    uint32_t glow[3] ROOM(PATCH);          /* E_c, Q6.26 */
     uint32_t depth_of_code[256];           /* of the cache */
     struct ways ways;
 } __attribute__((aligned(64)));
