@@ -81,12 +81,13 @@ LANES_INLINE lanes emission_codes(const struct brume_volume *v, lanes x,
     return lanes_where(wanted, code);
 }
 
-/* emission_between */
-static lanes emission_mixes(const struct brume_volume *v, lanes x, lanes y,
-                            lanes z, lanes_mask wanted)
+/* emission_between, wherever the voxels lie */
+static lanes emission_anywhere(const struct brume_volume *v, const lanes p[3],
+                               lanes_mask wanted)
 {
-    lanes wx = x >> 8 & 255u, wy = y >> 8 & 255u, wz = z >> 8 & 255u;
-    lanes x1 = x + 0x10000u, y1 = y + 0x10000u, plane[2];
+    lanes wx = p[0] >> 8 & 255u, wy = p[1] >> 8 & 255u, wz = p[2] >> 8 & 255u;
+    lanes x = p[0], y = p[1], z = p[2], plane[2];
+    lanes x1 = x + 0x10000u, y1 = y + 0x10000u;
     for (uint32_t n = 0; n < 2; n++, z += 0x10000u) {
         lanes low = mix_lanes(emission_codes(v, x, y, z, wanted),
                               emission_codes(v, x1, y, z, wanted), wx);
@@ -97,29 +98,64 @@ static lanes emission_mixes(const struct brume_volume *v, lanes x, lanes y,
     return (mix_lanes(plane[0], plane[1], wz) + 0x8000u) >> 16;
 }
 
+/* The same from voxel number i of the grid on, where all are in one brick. */
+LANES_INLINE lanes emission_in_bricks(const uint8_t *codes, lanes i,
+                                      const lanes p[3])
+{
+    lanes wx = p[0] >> 8 & 255u, wy = p[1] >> 8 & 255u, wz = p[2] >> 8 & 255u;
+    lanes plane[2];
+    uint32_t at[WIDE_LANES] __attribute__((aligned(64)));
+    lanes_spill(at, i);
+    for (uint32_t n = 0; n < 2; n++, codes += 64) {
+        lanes low = mix_lanes(gather_bytes_at(codes, at),
+                              gather_bytes_at(codes + 1, at), wx);
+        lanes high = mix_lanes(gather_bytes_at(codes + 8, at),
+                               gather_bytes_at(codes + 9, at), wx);
+        plane[n] = mix_lanes(low, high, wy);
+    }
+    return (mix_lanes(plane[0], plane[1], wz) + 0x8000u) >> 16;
+}
+
+/* emission_between, where a lookup of density may find something: in bricks,
+ * and beside them unless they have an apron, as lookups in these end with the
+ * cell. Elsewhere the core does not ask. */
+LANES_INLINE lanes emission_mixes(const struct brume_frame *f, const lanes p[3],
+                                  lanes_mask wanted)
+{
+    const struct brume_volume *v = f->volume;
+    lanes at = lanes_where(wanted, cell_number(v, p[0], p[1], p[2]));
+    lanes cell = gather_words(v->cells, at), m = lanes_of(0);
+    lanes_mask face = on_high_faces(p[0], p[1], p[2]);
+    lanes_mask brick =
+        mask_and(wanted, mask_less(cell, lanes_of(BRUME_CELL_EMPTY)));
+    lanes_mask near =
+        mask_and(wanted, mask_less(cell, lanes_of(BRUME_CELL_EMPTY + 2u)));
+    face = mask_and(face, f->leap_margin != 0 ? near : brick);
+    brick = mask_less_those(brick, face);
+    if (mask_any(brick)) {
+        lanes i = (p[0] >> 16 & 7u) | (p[1] >> 13 & 56u) | (p[2] >> 10 & 448u);
+        i = lanes_where(brick, (cell << 9) + i);
+        m = lanes_where(brick, emission_in_bricks(v->emission, i, p));
+    }
+    if (mask_any(face))
+        m = lanes_select(face, emission_anywhere(v, p, face), m);
+    return m;
+}
+
 /* emission_at, of the samples that are number n of the rays from `ray` on. In
- * an empty cell a lookup of density may find what is beyond its faces, and then
- * the core asks for emission as well. Where it does not ask, there are no
- * voxels beyond the cell, or none that differ from 0; but for bricks with an
- * apron, whose lookups end with the cell. */
+ * an empty cell the core does not ask unless a lookup of density, too, may find
+ * what is beyond its faces: elsewhere one voxel, wherever moved to, is 0. */
 LANES_INLINE lanes emissions_at(const struct brume_frame *f,
                                 const struct patch *b, uint32_t ray, lanes n,
                                 const lanes p[3], lanes_mask wanted)
 {
-    const struct brume_volume *v = f->volume;
     lanes moved[3] = {{0}};
-    if (f->kernel & 4u) {
-        lanes at = lanes_where(wanted, cell_number(v, p[0], p[1], p[2]));
-        lanes cell = gather_words(v->cells, at);
-        lanes nearest = lanes_of(BRUME_CELL_EMPTY + (f->leap_margin ? 2u : 0));
-        wanted = mask_and(wanted, mask_less(cell, nearest));
-        return mask_any(wanted) ? emission_mixes(v, p[0], p[1], p[2], wanted)
-                                : lanes_of(0);
-    }
+    if (f->kernel & 4u)
+        return emission_mixes(f, p, wanted);
     if (f->lit.stochastic)
         moves_of(moved, b, ray, n);
-    return emission_codes(v, p[0] + moved[0], p[1] + moved[1], p[2] + moved[2],
-                          wanted)
+    return emission_codes(f->volume, p[0] + moved[0], p[1] + moved[1],
+                          p[2] + moved[2], wanted)
            << 8;
 }
 
