@@ -75,11 +75,10 @@ bool wide_by_name(const char *name, enum wide_kernel *kernel)
     return false;
 }
 
-/* Fog, lamps, sun maps and emission are not done in lanes. */
+/* Fog is not done in lanes: its rays go on outside of the pool. */
 bool wide_can_march(const struct brume_frame *frame)
 {
-    return frame->lit.clusters == NULL && !frame->lit.fog.on &&
-           frame->lit.sun_map == NULL && !frame->lit.emits;
+    return !frame->lit.fog.on;
 }
 
 int wide_march_copy_rect(enum wide_kernel kernel, const struct wide_copy *copy,

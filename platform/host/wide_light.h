@@ -231,6 +231,8 @@ LANES_INLINE void light_queue(const struct brume_frame *f,
                       end - at < WIDE_LANES ? end - at : WIDE_LANES, k);
     if (f->lit.on)
         light_from_sky(f, b, end);
+    if (f->lit.on && f->lit.clusters != NULL)
+        light_from_lamps(f, b, end);
     if (rest != 0) {
         for (int i = 0; i < 3; i++)
             lanes_store(q->p[i], lanes_load(q->p[i] + end));

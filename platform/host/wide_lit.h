@@ -10,10 +10,7 @@
 
 #include "brume_ambient.h"
 #include "brume_sun.h"
-#include "wide_patch.h"
-
-/* Called by every kernel: one of each is enough. */
-#define LANES_CALL static __attribute__((noinline))
+#include "wide_things.h"
 
 /// Queue ///
 
@@ -94,6 +91,8 @@ LANES_CALL void add_octaves(const struct brume_frame *f, struct patch *b,
                             uint32_t at, uint32_t n, lanes sum)
 {
     lanes lost = lanes_load(b->queue.lost + at);
+    if (f->lit.sun_map != NULL)
+        lost = in_sun(f, &b->queue, at, n, lost);
     for (uint32_t i = 0; i < f->lit.octaves; i++)
         add_to_rays(
             b->sun[i], &b->queue, at, n,
@@ -348,6 +347,10 @@ LANES_INLINE void begin_lit(const struct brume_frame *f, struct patch *b)
 LANES_CALL void clear_lit(struct patch *b, uint32_t ray)
 {
     lanes_store(b->lit.count + ray, lanes_of(0));
+    for (int c = 0; c < 3; c++) {
+        lanes_store(b->lit.lamp[c] + ray, lanes_of(0));
+        lanes_store(b->lit.glow[c] + ray, lanes_of(0));
+    }
     for (int j = 0; j < 6; j++)
         lanes_store(b->lit.sky[j] + ray, lanes_of(0));
 }
@@ -377,6 +380,10 @@ LANES_CALL void finish_lit(const struct brume_frame *f, const struct patch *b,
         g.sun[i] = b->sun[i][ray];
     for (int j = 0; j < 6; j++)
         g.sky[j] = b->lit.sky[j][ray];
+    for (int c = 0; c < 3; c++) {
+        g.lamp[c] = b->lit.lamp[c][ray];
+        g.glow[c] = b->lit.glow[c][ray];
+    }
     brume_lit_finish(f, &g, unit, b->transmittance[ray], out);
 }
 

@@ -9,64 +9,9 @@
  * they wait in a queue until there are enough to fill all lanes. That changes
  * no byte, as the light of a ray is a sum.
  */
-#include "wide_light.h"
+#include "wide_glow.h"
 
 /// View ///
-
-LANES_INLINE lanes opacities(const struct brume_frame *f, lanes d,
-                             struct kernel k)
-{
-    if (is_narrow(k))
-        return lanes_of_table32(f->table, d);
-    return ~lanes_mul_hi(lanes_of_table32(f->table, d >> 8),
-                         lanes_of_table32(f->table + 256, d & 255u));
-}
-
-LANES_INLINE void push(struct patch *b, const lanes p[3], lanes lost,
-                       uint32_t ray, lanes_mask lit, bool jittered)
-{
-    struct queue *q = &b->queue;
-    uint32_t at = q->count;
-    for (int i = 0; i < 3; i++)
-        lanes_pack(q->p[i] + at, p[i], lit);
-    lanes_pack(q->lost + at, lost, lit);
-    lanes_pack(q->ray + at, lanes_count() + ray, lit);
-    if (jittered)
-        for (int i = 0; i < 3; i++)
-            lanes_pack(q->light_first[i] + at,
-                       lanes_load(b->light_first[i] + ray), lit);
-    q->count = at + (uint32_t)__builtin_popcount(mask_bits(lit));
-}
-
-/* What density d does at sample n of group g since its place; `on` are the
- * rays that go on, and those that do are returned. */
-LANES_INLINE lanes_mask lose_light(const struct brume_frame *f, struct patch *b,
-                                   uint32_t ray, const lanes p[3], lanes left,
-                                   lanes d, lanes_mask on, bool lit_rays,
-                                   struct kernel k)
-{
-    bool jittered =
-        f->jitter & BRUME_JITTER_LIGHT && f->light_kind != BRUME_UNIFORM;
-    uint32_t at = b->queue.count;
-    lanes_mask lit = mask_and(on, mask_less(lanes_of(f->min_density), d));
-    if (!mask_any(lit))
-        return on;
-    lanes transmittance = lanes_load(b->transmittance + ray);
-    lanes lost =
-        lanes_where(lit, lanes_mul_hi(transmittance, opacities(f, d, k)));
-    push(b, p, lost, ray, lit, jittered);
-    if (lit_rays)
-        push_lit(f, b, at, ray, d, lanes_load(b->samples + ray) - left, lit);
-    transmittance -= lost;
-    lanes_store(b->transmittance + ray, transmittance);
-    if (f->depth) {
-        lanes index = lanes_load(b->samples + ray) - left;
-        lanes_store(b->moment + ray, lanes_load(b->moment + ray) +
-                                         lanes_mul_hi(lost, index << 12));
-    }
-    lanes_mask dark = mask_less(transmittance, lanes_of(f->min_transmittance));
-    return mask_less_those(on, mask_and(lit, dark));
-}
 
 /* The samples of group g, whose rays are those from number `ray` on. False
  * when all have ended. */
@@ -75,6 +20,7 @@ LANES_INLINE bool step_group(const struct brume_frame *f,
                              uint32_t g, uint32_t ray, bool lit,
                              struct kernel k)
 {
+    const bool glows = lit && f->lit.emits;
     lanes left = lanes_load(b->left + ray), m = lanes_of(1);
     lanes p[3], move[3], inverse[3];
     lanes_mask on = mask_less(lanes_of(0), left);
@@ -82,7 +28,12 @@ LANES_INLINE bool step_group(const struct brume_frame *f,
         p[i] = lanes_load(b->p[i] + ray);
         move[i] = lanes_load(b->move[i] + ray);
     }
-    for (uint32_t n = 0;; n++) {
+    if (glows) {
+        on = glow_group(f, b, g, ray);
+        for (int i = 0; i < 3; i++)
+            p[i] += (AHEAD_VIEW - 1) * move[i];
+    }
+    for (uint32_t n = 0; !glows; n++) {
         lanes d = lanes_load(b->lookups.d[g * AHEAD_VIEW + n]);
         on = lose_light(f, b, ray, p, left - n, d, on, lit, k);
         if (n == AHEAD_VIEW - 1)

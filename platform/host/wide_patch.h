@@ -9,6 +9,9 @@
 #include "wide_lookup.h"
 #include "wide_rays.h"
 
+/* Called by every kernel: one of each is enough. */
+#define LANES_CALL static __attribute__((noinline))
+
 #define TILE_WIDTH 4u
 #define TILE_HEIGHT (WIDE_LANES / TILE_WIDTH)
 #define PATCH_WIDTH 16u
@@ -47,6 +50,8 @@ struct lit_rays {
     uint32_t noise[3] ROOM(PATCH);         /* of stochastic lookups */
     uint32_t count ROOM(PATCH);            /* lit samples */
     uint32_t sky[6] ROOM(PATCH);           /* B_j of docs/light.md, Q3.29 */
+    uint32_t lamp[3] ROOM(PATCH);          /* C_c, Q3.29 */
+    uint32_t glow[3] ROOM(PATCH);          /* E_c, Q6.26 */
     uint32_t depth_of_code[256];           /* of the cache */
     struct ways ways;
 } __attribute__((aligned(64)));
