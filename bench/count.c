@@ -36,6 +36,7 @@ BRUME_INLINE bool counted(const struct brume_frame *f, uint32_t x, uint32_t y,
 }
 
 #define find_density counted
+#define brume_depth_of count_depth_of
 #define brume_march_begin count_march_begin
 #define brume_march_span count_march_span
 #define brume_mean_depth count_mean_depth

@@ -21,8 +21,8 @@
  *   Q32.32 uint64_t  densities and extinction per unit density per voxel
  *
  * Memory   The caller owns all of it. The library has no heap, no writable
- *          statics, no recursion, and needs at most 2 KiB of stack on
- *          32-bit processors, 3.1 KiB on others; without lighting and
+ *          statics, no recursion, and needs at most 2.5 KiB of stack on
+ *          32-bit processors, 3.8 KiB on others; without lighting and
  *          sequences 0.8 (optimised builds; the bound of each target is in
  *          docs/TARGETS.md).
  *          Structs may be copied; they point only at the asset (brume_volume),
@@ -113,7 +113,7 @@ extern "C" {
 #endif
 /* All of "Lighting" below, or which of it: struct brume_lighting with phase
  * functions and octaves of multiple scattering takes 5.7 KiB with one format
- * and lookup, all of it with everything 31. */
+ * and lookup, all of it with everything 49. */
 #ifndef BRUME_WITH_LIGHTING
 #define BRUME_WITH_LIGHTING 1
 #endif
