@@ -51,7 +51,7 @@ atlas_page()
         $1 != unit {
             unit = $1
             printf "%s\n| ![%s](atlas/%s.png) | **%s** | %s | ", \
-                NR > 2 ? " |" : "", unit, unit, $2, $3
+                (NR > 2 ? " |" : ""), unit, unit, $2, $3
             n = 0
         }
         {
