@@ -215,12 +215,35 @@ struct walk {
 #endif
 };
 
-BRUME_INLINE bool is_inside(const struct walk *w)
+/* Is there more than the volume, the sun and the sky? The loop is compiled
+ * twice, and where there is not `more` is a constant: what a scene does not
+ * use costs it nothing. */
+#define HAS_MORE \
+    (BRUME_WITH_FOG || BRUME_WITH_LAMPS || BRUME_WITH_EMISSION || \
+     BRUME_WITH_SURFACE)
+#if HAS_MORE
+static bool has_more(const struct brume_frame *f)
+{
+    bool more = brume_has_fog(f);
+#if BRUME_WITH_LAMPS
+    more = more || f->lit.clusters != NULL;
+#endif
+#if BRUME_WITH_EMISSION
+    more = more || f->lit.emits;
+#endif
+#if BRUME_WITH_SURFACE
+    more = more || f->lit.sun_map != NULL;
+#endif
+    return more;
+}
+#endif
+
+BRUME_INLINE bool is_inside(const struct walk *w, bool more)
 {
 #if BRUME_WITH_FOG
-    return !w->outside;
+    return !(more && w->outside);
 #else
-    (void)w;
+    (void)w, (void)more;
     return true;
 #endif
 }
@@ -240,9 +263,10 @@ struct matter {
 
 /* Looks for it; how many samples there are to the next that may hold
  * something. */
-static uint32_t find_matter(const struct brume_frame *f,
-                            const struct brume_ray *ray, const struct walk *w,
-                            struct matter *at, const struct kernel *k)
+BRUME_INLINE uint32_t find_matter(const struct brume_frame *f,
+                                  const struct brume_ray *ray,
+                                  const struct walk *w, struct matter *at,
+                                  const struct kernel *k, bool more)
 {
     const uint32_t *p = w->p;
     uint32_t m = 1;
@@ -251,12 +275,12 @@ static uint32_t find_matter(const struct brume_frame *f,
 #if BRUME_WITH_EMISSION
     at->glows = false;
 #endif
-    if (is_inside(w) && !find_density(f, p[0], p[1], p[2], &at->d, *k)) {
+    if (is_inside(w, more) && !find_density(f, p[0], p[1], p[2], &at->d, *k)) {
         m = leap(f, &ray->line, p[0], p[1], p[2], at->d, *k);
         at->d = 0;
     } else {
 #if BRUME_WITH_EMISSION
-        at->any = at->glows = f->lit.emits && is_inside(w);
+        at->any = at->glows = more && f->lit.emits && is_inside(w, more);
 #endif
         if (at->d > f->min_density) {
             at->any = true;
@@ -264,7 +288,7 @@ static uint32_t find_matter(const struct brume_frame *f,
         }
     }
 #if BRUME_WITH_FOG
-    if (brume_has_fog(f)) {
+    if (more && brume_has_fog(f)) {
         m = 1;
         at->fog = fog_at(f, p);
         at->any = at->any || at->fog.all != 0;
@@ -275,13 +299,15 @@ static uint32_t find_matter(const struct brume_frame *f,
 }
 
 /* Sunlight that `lost` of the ray's transmittance scatters, Q1.31. */
-static void add_sun(const struct brume_frame *f, const struct brume_ray *ray,
-                    struct walk *w, const struct matter *at, uint32_t lost,
-                    const struct kernel *k)
+BRUME_INLINE void add_sun(const struct brume_frame *f,
+                          const struct brume_ray *ray, struct walk *w,
+                          const struct matter *at, uint32_t lost,
+                          const struct kernel *k, bool more)
 {
     uint32_t sum = 0;
+    (void)more; /* in builds without what it tells of */
 #if BRUME_WITH_SURFACE
-    if (f->lit.sun_map != NULL) { /* Q31 * Q16 -> Q31 */
+    if (more && f->lit.sun_map != NULL) { /* Q31 * Q16 -> Q31 */
         uint32_t share = sun_map_light(f, w->p);
         if (share == 0)
             return;
@@ -290,15 +316,16 @@ static void add_sun(const struct brume_frame *f, const struct brume_ray *ray,
     }
 #endif
 #if BRUME_WITH_FOG
-    if (brume_has_fog(f)) {
+    if (more && brume_has_fog(f)) {
         uint32_t depth = fog_depth(f, &ray->light, w->p, &at->fog);
-        sum = is_inside(w) ? sun_sum(f, &ray->light, w->p, at->d, &w->reach, k)
-                           : sun_sum_outside(f, &ray->light, w->p, k);
+        sum = is_inside(w, more)
+                  ? sun_sum(f, &ray->light, w->p, at->d, &w->reach, k)
+                  : sun_sum_outside(f, &ray->light, w->p, k);
         for (uint32_t i = 0; i < f->lit.octaves; i++) {
             uint32_t a = f->lit.fog.extinction[i];
-            uint32_t more = a == 0xffffffffu ? depth : mul_hi_floor(depth, a);
+            uint32_t part = a == 0xffffffffu ? depth : mul_hi_floor(depth, a);
             w->g.sun[i] += mul_hi_floor(
-                lost, transmittance_beyond(&f->lit.tau[i], sum, more));
+                lost, transmittance_beyond(&f->lit.tau[i], sum, part));
         }
         return;
     }
@@ -310,7 +337,7 @@ static void add_sun(const struct brume_frame *f, const struct brume_ray *ray,
 }
 
 /* What a sample takes of the ray, Q1.31. */
-static void lose(struct walk *w, uint32_t lost)
+BRUME_INLINE void lose(struct walk *w, uint32_t lost)
 {
     w->transmittance -= lost;
 #if BRUME_WITH_DEPTH
@@ -319,13 +346,14 @@ static void lose(struct walk *w, uint32_t lost)
 }
 
 /* Light and loss at a sample that holds something. */
-static void add_light(const struct brume_frame *f, const struct brume_ray *ray,
-                      struct walk *w, const struct matter *at,
-                      const struct kernel *k)
+BRUME_INLINE void add_light(const struct brume_frame *f,
+                            const struct brume_ray *ray, struct walk *w,
+                            const struct matter *at, const struct kernel *k,
+                            bool more)
 {
     uint32_t fade = at->opacity, glowing = 0;
 #if BRUME_WITH_EMISSION
-    if (at->glows) {
+    if (more && at->glows) {
         glowing = glow_of(f, &w->g, w->p, w->transmittance, &fade);
         if (at->opacity == 0) {
             lose(w, glowing);
@@ -335,13 +363,13 @@ static void add_light(const struct brume_frame *f, const struct brume_ray *ray,
 #endif
     uint32_t lost = mul_hi_floor(w->transmittance, fade);
     BRUME_TALLY(lit_samples, 1);
-    add_sun(f, ray, w, at, lost, k);
+    add_sun(f, ray, w, at, lost, k, more);
 #if BRUME_WITH_AMBIENT
     if (f->lit.ambient != BRUME_AMBIENT_NONE)
-        add_sky(f, &w->g, ray, w->p, lost, k, is_inside(w));
+        add_sky(f, &w->g, ray, w->p, lost, k, is_inside(w, more));
 #endif
 #if BRUME_WITH_LAMPS
-    if (f->lit.clusters != NULL)
+    if (more && f->lit.clusters != NULL)
         add_lamps(f, &w->g, ray, w->p, lost, k);
 #endif
     w->g.lit++;
@@ -350,8 +378,9 @@ static void add_light(const struct brume_frame *f, const struct brume_ray *ray,
 
 /* The next n samples, all of them in the pool or none. False when too little is
  * left to go on. */
-static bool march_part(const struct brume_frame *f, const struct brume_ray *ray,
-                       struct walk *w, uint32_t n, const struct kernel *k)
+BRUME_INLINE bool march_loop(const struct brume_frame *f,
+                             const struct brume_ray *ray, struct walk *w,
+                             uint32_t n, const struct kernel *k, bool more)
 {
     for (;;) {
         struct matter at;
@@ -360,9 +389,9 @@ static bool march_part(const struct brume_frame *f, const struct brume_ray *ray,
         if (f->lit.stochastic)
             move_lookup(&w->g, ray, w->index);
 #endif
-        uint32_t m = find_matter(f, ray, w, &at, k);
+        uint32_t m = find_matter(f, ray, w, &at, k, more);
         if (at.any) {
-            add_light(f, ray, w, &at, k);
+            add_light(f, ray, w, &at, k, more);
             if (w->transmittance < f->min_transmittance)
                 return false;
         }
@@ -374,6 +403,14 @@ static bool march_part(const struct brume_frame *f, const struct brume_ray *ray,
             w->p[i] += m * (uint32_t)ray->line.move[i];
     }
 }
+
+#if HAS_MORE
+static bool march_part(const struct brume_frame *f, const struct brume_ray *ray,
+                       struct walk *w, uint32_t n, const struct kernel *k)
+{
+    return march_loop(f, ray, w, n, k, true);
+}
+#endif
 
 #if BRUME_WITH_FOG
 /* Samples that are found by adding up moves of 2^-17 voxels' error each. */
@@ -419,7 +456,12 @@ void brume_lit_march(const struct brume_frame *frame,
         march_in_fog(f, ray, &w, &k);
     else
 #endif
+#if HAS_MORE
+        if (has_more(f))
         march_part(f, ray, &w, ray->count, &k);
+    else
+#endif
+        march_loop(f, ray, &w, ray->count, &k, false);
 #if BRUME_WITH_DEPTH
     out->depth = 0;
     if (f->depth)
