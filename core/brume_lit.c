@@ -441,6 +441,25 @@ static void march_in_fog(const struct brume_frame *f,
 }
 #endif
 
+/* All samples of the ray. */
+static void march_all(const struct brume_frame *f, const struct brume_ray *ray,
+                      struct walk *w, const struct kernel *k)
+{
+#if BRUME_WITH_FOG
+    if (brume_has_fog(f)) {
+        march_in_fog(f, ray, w, k);
+        return;
+    }
+#endif
+#if HAS_MORE
+    if (has_more(f)) {
+        march_part(f, ray, w, ray->count, k);
+        return;
+    }
+#endif
+    march_loop(f, ray, w, ray->count, k, false);
+}
+
 void brume_lit_march(const struct brume_frame *frame,
                      const struct brume_ray *ray, struct brume_radiance *out)
 {
@@ -451,17 +470,7 @@ void brume_lit_march(const struct brume_frame *frame,
     BRUME_TALLY(rays_in_pool, 1);
     for (int i = 0; i < 3; i++)
         w.p[i] = ray->position[i];
-#if BRUME_WITH_FOG
-    if (brume_has_fog(f))
-        march_in_fog(f, ray, &w, &k);
-    else
-#endif
-#if HAS_MORE
-        if (has_more(f))
-        march_part(f, ray, &w, ray->count, &k);
-    else
-#endif
-        march_loop(f, ray, &w, ray->count, &k, false);
+    march_all(f, ray, &w, &k);
 #if BRUME_WITH_DEPTH
     out->depth = 0;
     if (f->depth)
