@@ -27,7 +27,7 @@ uint32_t brume_mean_depth(const struct brume_frame *frame, uint32_t t,
         brume_number_mul(brume_number_of(moment, 20),
                          brume_number_inverse(brume_number_of(lost, 0)));
     way = brume_number_mul(way, brume_number_of(frame->step, 0));
-    const uint32_t cap = 0xffdfffffu; /* of code 65534 */
+    const uint32_t cap = 0xffdfffffu; /* of code 65533 */
     uint32_t further = brume_number_floor(way, 0);
     return brume_depth_code(t < cap && further < cap - t ? t + further : cap);
 }
