@@ -113,7 +113,7 @@ extern "C" {
 #endif
 /* All of "Lighting" below, or which of it: struct brume_lighting with phase
  * functions and octaves of multiple scattering takes 5.7 KiB with one format
- * and lookup, all of it with everything 49. */
+ * and lookup, all of it with everything 51. */
 #ifndef BRUME_WITH_LIGHTING
 #define BRUME_WITH_LIGHTING 1
 #endif

@@ -241,7 +241,7 @@ static struct met march(const struct brume_shadow *s, struct sun_ray ray,
 /// Depth ///
 
 /* Codes of the largest distances stand for all beyond. */
-#define FARTHEST 0xffdfffffu /* of code 65534 */
+#define FARTHEST 0xffdfffffu /* of code 65533 */
 
 static uint16_t depth_after(const struct brume_shadow *s, uint32_t t,
                             struct brume_number samples)
