@@ -39,7 +39,7 @@ compiled()
         -Itables/noise tables/noise/*.c platform/host/image*.c \
         platform/host/png_pack.c platform/host/crc32.c \
         platform/host/deflate*.c platform/host/inflate.c \
-        platform/host/out_file.c platform/host/pool.c \
+        platform/host/grey16.c platform/host/out_file.c platform/host/pool.c \
         -o "$work/$name" -lm -lpthread 2>"$err" && return
     head -n 5 "$err"
     return 1
