@@ -86,13 +86,6 @@ static bool same(enum wide_kernel kernel, const struct wide_copy *copy,
     return good;
 }
 
-/* Do the lanes march all frames but those with fog? One that fell back to the
- * core would equal it, whatever the lanes do. */
-static bool is_marched_where_due(const struct brume_frame *f)
-{
-    return wide_can_march(f) == !f->lit.fog.on;
-}
-
 /// Golden scenes ///
 
 static void check_scene(const struct test_scene *t, const struct wide_copy *c,
@@ -132,8 +125,6 @@ static void check_scenes(const struct test_volumes *volumes)
         test_scene_frame(&scene, t, v, test_scene_frames(t) - 1);
         if (brume_begin_frame(&frame, v, &scene) != BRUME_OK)
             abort();
-        tap_check(is_marched_where_due(&frame), "%s: marched in lanes, or fog",
-                  t->name);
         wide_copy_prepare(copy_of(volumes, v), &frame, NULL);
         check_scene(t, copy_of(volumes, v), &frame);
     }
@@ -371,7 +362,7 @@ static void check_random(const struct test_volumes *volumes)
     struct brume_noise_table tables[2] = {{values, 3, 4, 1, 4},
                                           {values, 3, 4, 1, 8}};
     static int bad[WIDE_KERNELS], copied_bad[WIDE_KERNELS];
-    int drawn = 0, first_bad = -1, elsewhere = 0;
+    int drawn = 0, first_bad = -1;
     for (size_t i = 0; i < sizeof values; i++)
         values[i] = (uint8_t)random_below(256);
     for (int n = 0; n < RANDOM_SCENES; n++) {
@@ -385,7 +376,6 @@ static void check_random(const struct test_volumes *volumes)
         if (brume_begin_frame(&frame, v, &scene) != BRUME_OK)
             continue;
         drawn++;
-        elsewhere += !is_marched_where_due(&frame);
         random_rect(rect, &frame);
         wide_copy_prepare(&copies[which], &frame, NULL);
         wide_copy_prepare(&aprons[which], &frame, NULL);
@@ -402,7 +392,6 @@ static void check_random(const struct test_volumes *volumes)
     }
     tap_check(drawn > RANDOM_SCENES * 9 / 10, "%d of %d random scenes are good",
               drawn, RANDOM_SCENES);
-    tap_check(elsewhere == 0, "all but those with fog are marched in lanes");
     for (int k = 0; k < kernel_count; k++) {
         const char *name = wide_name(kernels[k]);
         tap_check(bad[k] == 0, "%s: %d random scenes differ, the first is %d",

@@ -444,7 +444,7 @@ int renderer_draw(struct renderer *renderer, const struct brume_scene *scene,
         error = brume_begin_state(r->state, &r->frame);
     }
     now = profile_add(r->profile, PASS_BEGIN, now);
-    if (!error && wide_can_march(&r->frame))
+    if (!error)
         wide_copy_prepare(&r->copy, &r->frame, r->pool);
     profile_add(r->profile, PASS_COPY, now);
     if (!error)

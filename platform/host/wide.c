@@ -75,20 +75,12 @@ bool wide_by_name(const char *name, enum wide_kernel *kernel)
     return false;
 }
 
-/* Fog is not done in lanes: its rays go on outside of the pool. */
-bool wide_can_march(const struct brume_frame *frame)
-{
-    return !frame->lit.fog.on;
-}
-
 int wide_march_copy_rect(enum wide_kernel kernel, const struct wide_copy *copy,
                          const struct brume_frame *frame, unsigned x,
                          unsigned y, unsigned w, unsigned h,
                          struct brume_radiance *out, size_t stride)
 {
     wide_march *march = wide_has(kernel) ? march_of(kernel) : NULL;
-    if (frame != NULL && !wide_can_march(frame))
-        march = NULL;
     /* The scalar one checks a rectangle, too: an empty one of this place. */
     int error = brume_march_rect(frame, x, y, w, march ? 0 : h, out, stride);
     if (error != BRUME_OK || march == NULL)

@@ -37,15 +37,10 @@ const char *wide_name(enum wide_kernel kernel);
 bool wide_by_name(const char *name, enum wide_kernel *kernel);
 
 /* As brume_march_rect, and the same bytes in out. A kernel that wide_has
- * denies is replaced by the scalar one, and so is any that cannot march the
- * frame. */
+ * denies is replaced by the scalar one. */
 int wide_march_rect(enum wide_kernel kernel, const struct brume_frame *frame,
                     unsigned x, unsigned y, unsigned w, unsigned h,
                     struct brume_radiance *out, size_t stride);
-
-/* Do the lanes know all that a frame asks for? Those of others are marched by
- * the scalar core, whatever the kernel: frames with fog. */
-bool wide_can_march(const struct brume_frame *frame);
 
 /* A volume once more, in orders in which a lookup takes one load. Each is in
  * pages that are zero where the volume is empty, and that a host with virtual

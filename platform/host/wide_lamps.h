@@ -107,11 +107,6 @@ LANES_INLINE lanes lamp_units(const struct lamp_lanes *w, lanes unit[3])
     return lanes_mul_hi(x, r) >> ((half - 2u) & 31u);
 }
 
-LANES_INLINE lanes_mask less_signed(lanes a, lanes b)
-{
-    return mask_less(a ^ 0x80000000u, b ^ 0x80000000u);
-}
-
 /* lamp_spot */
 LANES_INLINE lanes lamp_spots(const struct brume_lit_lamp *l,
                               const lanes unit[3], lanes_mask here)
@@ -206,13 +201,6 @@ LANES_INLINE void ray_of(struct brume_ray *ray, const struct patch *b,
     ray->y = b->lit.y[number];
 }
 
-LANES_INLINE void queued_position(uint32_t p[3], const struct queue *q,
-                                  uint32_t at)
-{
-    for (int i = 0; i < 3; i++)
-        p[i] = q->p[i][at];
-}
-
 /* Falls of samples of distance r, times lamp_through. */
 static lanes lamp_throughs(const struct brume_frame *f, const struct patch *b,
                            uint32_t at, const struct brume_lit_lamp *l,
@@ -251,12 +239,6 @@ static lanes lamp_throughs(const struct brume_frame *f, const struct patch *b,
 
 /// Sums ///
 
-/* lamp_sum */
-LANES_INLINE lanes lamp_sums(lanes a, lanes b)
-{
-    return lanes_select(mask_less(a + b, b), lanes_of(0xffffffffu), a + b);
-}
-
 /* add_any_lamp, for those of the samples that are `wanted`. */
 static void meet_lamp(const struct brume_frame *f, const struct patch *b,
                       struct lamp_samples *s, const struct brume_lit_lamp *l,
@@ -283,7 +265,7 @@ static void meet_lamp(const struct brume_frame *f, const struct patch *b,
     }
     for (int c = 0; c < (f->lit.colour ? 3 : 1); c++) {
         lanes light = lanes_mul_hi(fall, lanes_of(l->colour[c]));
-        s->sum[c] = lamp_sums(
+        s->sum[c] = held_sum(
             s->sum[c], phase != NULL ? lamp_times_lanes(light, up) : light);
     }
 }

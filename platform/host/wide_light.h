@@ -54,11 +54,12 @@ LANES_INLINE lanes sum_of_ways(const struct brume_frame *f,
     for (n = 0; n < w->count; n++) {
         for (int i = 0; i < 3; i++)
             p[i] = lanes_load(b->queue.p[i] + at) + lanes_load(w->way[n][i]);
-        wanted = mask_and(wanted, inside_lanes(f, p[0], p[1], p[2]));
+        lanes_mask inside = inside_lanes(f, p[0], p[1], p[2]);
+        wanted = mask_and(wanted, mask_or(inside, w->outside));
         wanted = mask_and(wanted, mask_less(lanes_of(n), w->own));
         if (!mask_any(wanted))
             break;
-        want_moved(&b->lookups, n, s, p, moved, wanted, k);
+        want_moved(&b->lookups, n, s, p, moved, mask_and(wanted, inside), k);
     }
     look_up(&b->lookups, n, s, k);
     for (uint32_t i = 0; i < n; i++)
@@ -114,12 +115,14 @@ LANES_INLINE void begin_light_wave(const struct brume_frame *f,
 }
 
 LANES_INLINE void fill_light_wave(const struct brume_frame *f,
-                                  struct light_wave *w, const struct queue *q,
+                                  struct light_wave *w, const struct patch *b,
                                   uint32_t *next, uint32_t end)
 {
+    const struct queue *q = &b->queue;
     for (; *next < end && w->count < LOOKUPS / AHEAD; *next += WIDE_LANES) {
         uint32_t g = w->count++, at = *next;
         lanes_mask valid = mask_less(lanes_count(), lanes_of(end - at));
+        valid = mask_less_those(valid, queued_outside(f, b, at));
         w->first[g] = at;
         for (int i = 0; i < 3; i++)
             lanes_store(w->p[i][g],
@@ -192,7 +195,7 @@ LANES_INLINE void light_uniform(const struct brume_frame *f,
     uint32_t sums ROOM(QUEUE), next = 0;
     begin_light_wave(f, &w);
     for (;;) {
-        fill_light_wave(f, &w, &b->queue, &next, end);
+        fill_light_wave(f, &w, b, &next, end);
         if (w.count == 0)
             break;
         for (uint32_t g = 0; g < w.count; g++)
@@ -206,7 +209,8 @@ LANES_INLINE void light_uniform(const struct brume_frame *f,
     for (uint32_t at = 0; at < end; at += WIDE_LANES) {
         uint32_t n = end - at < WIDE_LANES ? end - at : WIDE_LANES;
         if (f->lit.on)
-            add_octaves(f, b, at, n, lanes_load(sums + at));
+            add_octaves(f, b, at, n,
+                        sums_outside(f, b, at, n, lanes_load(sums + at)));
         else
             add_light(f, b, at, n, lanes_load(sums + at));
     }

@@ -10,7 +10,8 @@
 
 #include "brume_ambient.h"
 #include "brume_sun.h"
-#include "wide_things.h"
+#include "wide_fog.h"
+#include "wide_sun_map.h"
 
 /// Queue ///
 
@@ -53,6 +54,11 @@ LANES_CALL void push_lit(const struct brume_frame *f, struct patch *b,
 /* The last samples of a queue, from number `end` on, are its first. */
 LANES_CALL void keep_lit(struct patch *b, uint32_t end)
 {
+    struct fog_rays *fog = &b->fog;
+    lanes_store(fog->by_height, lanes_load(fog->by_height + end));
+    lanes_store(fog->shapes, lanes_load(fog->shapes + end));
+    lanes_store(fog->above, lanes_load(fog->above + end));
+    lanes_store(fog->outside, lanes_load(fog->outside + end));
     lanes_store(b->lit.d, lanes_load(b->lit.d + end));
     lanes_store(b->lit.nth, lanes_load(b->lit.nth + end));
     for (int i = 0; i < 3; i++)
@@ -73,6 +79,7 @@ LANES_INLINE void queued_positions(lanes p[3], const struct brume_frame *f,
 LANES_INLINE void begin_ways(struct ways *w, uint32_t n, uint32_t count)
 {
     w->wanted = mask_first(n);
+    w->outside = mask_first(0);
     w->count = count;
     w->own = lanes_of(LOOKUPS);
 }
@@ -85,14 +92,52 @@ LANES_INLINE void put_doubled(struct ways *w, const lanes first[3], uint32_t k)
     w->weight[k] = 1u << k;
 }
 
+/* In fog samples may be outside of the pool, and of these only those that see
+ * the sun through it have ways. */
+LANES_INLINE void leave_out_ways(const struct brume_frame *f, struct patch *b,
+                                 uint32_t at)
+{
+    struct ways *w = &b->lit.ways;
+    lanes_mask outside = mask_and(queued_outside(f, b, at), w->wanted);
+    lanes p[3];
+    if (!mask_any(outside))
+        return;
+    for (int i = 0; i < 3; i++)
+        p[i] = lanes_load(b->queue.p[i] + at);
+    w->outside = mask_and(outside, ways_to_pool(f, p));
+    w->wanted = mask_or(mask_less_those(w->wanted, outside), w->outside);
+}
+
 /// Octaves ///
+
+/* add_octaves in fog: its optical depth is added to that of the sums */
+static void add_octaves_in_fog(const struct brume_frame *f, struct patch *b,
+                               uint32_t at, uint32_t n, lanes sum, lanes lost)
+{
+    lanes p[3];
+    for (int i = 0; i < 3; i++)
+        p[i] = lanes_load(b->queue.p[i] + at);
+    lanes depth = fog_depths(f, b, at, p);
+    for (uint32_t i = 0; i < f->lit.octaves; i++) {
+        uint32_t a = f->lit.fog.extinction[i];
+        lanes part =
+            a == 0xffffffffu ? depth : lanes_mul_hi(depth, lanes_of(a));
+        add_to_rays(b->sun[i], &b->queue, at, n,
+                    lanes_mul_hi(lost, transmittances_beyond(&f->lit.tau[i],
+                                                             sum, part)));
+    }
+}
 
 LANES_CALL void add_octaves(const struct brume_frame *f, struct patch *b,
                             uint32_t at, uint32_t n, lanes sum)
 {
     lanes lost = lanes_load(b->queue.lost + at);
     if (f->lit.sun_map != NULL)
-        lost = in_sun(f, &b->queue, at, n, lost);
+        lost = in_sun(f, &b->queue, at, lost);
+    if (f->lit.fog.on) {
+        add_octaves_in_fog(f, b, at, n, sum, lost);
+        return;
+    }
     for (uint32_t i = 0; i < f->lit.octaves; i++)
         add_to_rays(
             b->sun[i], &b->queue, at, n,
@@ -142,14 +187,16 @@ static lanes dense_lanes(const struct patch *b, const struct dense *g,
 
 /// Cache ///
 
-/* sum_cache */
+/* sum_cache, of n samples; of those outside of the pool it is anything */
 LANES_INLINE lanes cache_sums(const struct brume_frame *f,
-                              const struct patch *b, uint32_t at)
+                              const struct patch *b, uint32_t at, uint32_t n)
 {
     const struct brume_cache *c = &f->lit.cache;
     struct dense g = {c->from, {c->size[0], c->size[1], c->size[2]}, true};
     bool between = f->kernel & 4u;
     lanes p[3], sum;
+    if (!mask_any(mask_less_those(mask_first(n), queued_outside(f, b, at))))
+        return lanes_of(0);
     queued_positions(p, f, &b->queue, at);
     for (int i = 0; i < 3; i++) {
         p[i] = (p[i] >> c->spacing_log2) - 0x8000u;
@@ -244,23 +291,25 @@ static lanes cone_sums(const struct brume_frame *f, struct patch *b,
     lanes p[3], half = lanes_of(brume_half_voxel(f));
     begin_light(&light, f, &b->queue, at);
     begin_ways(&b->lit.ways, n, 0);
+    leave_out_ways(f, b, at);
     lanes sum = near_segments(f, b, &light, at);
-    lanes_mask wanted = b->lit.ways.wanted;
+    lanes_mask wanted = b->lit.ways.wanted, outside = b->lit.ways.outside;
     for (uint32_t i = b->lit.ways.count; i < light.samples; i++) {
         struct brume_segment s = brume_segment_of(i, f->light_samples);
         lanes way[3];
         lanes_mask far = segment_ways(way, f, &light, s);
         for (int a = 0; a < 3; a++)
             p[a] = lanes_load(b->queue.p[a] + at) + way[a];
-        wanted = mask_and(wanted, inside_lanes(f, p[0], p[1], p[2]));
+        lanes_mask inside = inside_lanes(f, p[0], p[1], p[2]);
+        wanted = mask_and(wanted, mask_or(inside, outside));
         wanted = mask_less_those(wanted, far);
         if (!mask_any(wanted))
             break;
         for (int a = 0; a < 3; a++)
             p[a] += half;
-        sum +=
-            s.length *
-            means_at(v, &mip, p, (uint32_t)f->lit.cone_level + s.log2, wanted);
+        sum += s.length * means_at(v, &mip, p,
+                                   (uint32_t)f->lit.cone_level + s.log2,
+                                   mask_and(wanted, inside));
     }
     return sum;
 }
@@ -275,6 +324,7 @@ LANES_INLINE lanes log_sums(const struct brume_frame *f, struct patch *b,
     struct light_lanes light;
     begin_light(&light, f, &b->queue, at);
     begin_ways(w, n, light.samples);
+    leave_out_ways(f, b, at);
     w->own = light.own;
     for (uint32_t k = 0; k < w->count; k++)
         put_doubled(w, light.first, k);
@@ -289,6 +339,7 @@ static lanes uniform_sums(const struct brume_frame *f, struct patch *b,
     struct ways *w = &b->lit.ways;
     lanes sum = lanes_of(0);
     begin_ways(w, n, 0);
+    w->wanted = mask_less_those(w->wanted, queued_outside(f, b, at));
     for (uint32_t k = 0; k < f->light.samples; k += w->count) {
         uint32_t left = f->light.samples - k;
         if (!mask_any(w->wanted))
@@ -304,7 +355,7 @@ static lanes uniform_sums(const struct brume_frame *f, struct patch *b,
         }
         sum += b->sum_ways(f, b, at);
     }
-    return sum;
+    return sums_outside(f, b, at, n, sum);
 }
 
 /* Is the sun's light the business of light_lit? Else of a kernel alone. */
@@ -320,7 +371,7 @@ static lanes lit_sums(const struct brume_frame *f, struct patch *b, uint32_t at,
     case BRUME_LOG: return log_sums(f, b, at, n);
     case BRUME_UNIFORM: return uniform_sums(f, b, at, n);
     case BRUME_CONE: return cone_sums(f, b, at, n);
-    case BRUME_CACHE: return cache_sums(f, b, at);
+    case BRUME_CACHE: return sums_outside(f, b, at, n, cache_sums(f, b, at, n));
     default: return lanes_of(0);
     }
 }

@@ -9,7 +9,7 @@
  * they wait in a queue until there are enough to fill all lanes. That changes
  * no byte, as the light of a ray is a sum.
  */
-#include "wide_glow.h"
+#include "wide_fog_view.h"
 
 /// View ///
 
@@ -21,6 +21,8 @@ LANES_INLINE bool step_group(const struct brume_frame *f,
                              struct kernel k)
 {
     const bool glows = lit && f->lit.emits;
+    if (lit && f->lit.fog.on)
+        return fog_group(f, b, g, ray);
     lanes left = lanes_load(b->left + ray), m = lanes_of(1);
     lanes p[3], move[3], inverse[3];
     lanes_mask on = mask_less(lanes_of(0), left);
@@ -241,14 +243,16 @@ static void add_rays(const struct brume_frame *f, struct patch *b, uint32_t ray,
     if (f->jitter & BRUME_JITTER_LIGHT)
         for (int i = 0; i < 3; i++)
             lanes_store(b->light_first[i] + ray, light_first[i]);
+    lanes_store(b->t + ray, r.t);
     for (int i = 0; i < 3; i++) {
         lanes_store(b->p[i] + ray, r.position[i]);
         lanes_store(b->move[i] + ray, r.move[i]);
         lanes_store(b->inverse[i] + ray, inverse_of(r.move[i], f->skip));
     }
-    lanes_store(b->t + ray, r.t);
     lanes_store(b->left + ray, lanes_where(r.alive, r.left));
     lanes_store(b->samples + ray, r.left);
+    if (f->lit.fog.on)
+        add_fog_rays(f, b, ray, &r);
 }
 
 /* The w x h rays of a tile. */

@@ -38,6 +38,7 @@ struct ways {
     uint32_t weight[LOOKUPS], count;
     lanes own;         /* how many are taken of each sample's */
     lanes_mask wanted; /* samples; afterwards those with all ways in the pool */
+    lanes_mask outside; /* of the pool: those whose ways may come into it */
 } __attribute__((aligned(64)));
 
 /* Of rays with lighting; and of the queue's samples. */
@@ -56,6 +57,17 @@ struct lit_rays {
     struct ways ways;
 } __attribute__((aligned(64)));
 
+/* Of rays through fog; and of the queue's samples. */
+struct fog_rays {
+    uint32_t by_height ROOM(QUEUE); /* struct fog_lanes */
+    uint32_t shapes ROOM(QUEUE), above ROOM(QUEUE);
+    uint32_t outside ROOM(QUEUE); /* of the pool? All ones, or 0 */
+    uint32_t left ROOM(PATCH);    /* samples of a part outside of the pool */
+    /* Numbers of samples: the first in the pool, the first behind it, all. */
+    uint32_t before ROOM(PATCH), behind ROOM(PATCH), all ROOM(PATCH);
+    uint32_t enter[3] ROOM(PATCH); /* where the first in the pool is */
+} __attribute__((aligned(64)));
+
 /* The rays of a rectangle, group by group, and the groups under way. */
 struct patch {
     const struct wide_copy *copy;
@@ -69,13 +81,15 @@ struct patch {
     uint32_t p[3] ROOM(PATCH), move[3] ROOM(PATCH);
     uint32_t inverse[3] ROOM(PATCH); /* floats: (1 - 2^-20) / |move| */
     uint32_t left ROOM(PATCH);       /* samples in the pool; 0 when ended */
-    uint32_t samples ROOM(PATCH);    /* that there were; of the ray */
+    uint32_t samples ROOM(PATCH);    /* that there were; of the ray. In fog
+                                      * before the part's end */
     uint32_t t ROOM(PATCH);          /* of the first */
     uint32_t transmittance ROOM(PATCH), moment ROOM(PATCH);
     uint32_t light_first[3] ROOM(PATCH);         /* if jittered */
     uint32_t sun[BRUME_MAX_OCTAVES] ROOM(PATCH); /* A_i, Q3.29; without
                                                   * lighting the first */
     struct lit_rays lit;
+    struct fog_rays fog;
 } __attribute__((aligned(64)));
 
 /// Leaping ///
@@ -129,7 +143,8 @@ struct light_lanes {
 
 /* Those of the n samples from number `at` of the queue on. A sample whose
  * distance does not fit the word is not taken; only in pools beyond 16384
- * voxels is it not out of the pool anyway, and the one before it inside. */
+ * voxels, or seen from outside, is it not out of the pool anyway, and the one
+ * before it inside. */
 LANES_INLINE void begin_light(struct light_lanes *light,
                               const struct brume_frame *f,
                               const struct queue *q, uint32_t at)
@@ -137,12 +152,19 @@ LANES_INLINE void begin_light(struct light_lanes *light,
     bool jittered = f->jitter & BRUME_JITTER_LIGHT;
     uint32_t far = f->limit[0] | f->limit[1] | f->limit[2];
     light->samples = jittered ? f->light_samples : f->light.samples;
-    light->unequal = jittered && far > 1u << 30;
+    light->unequal = jittered && (far > 1u << 30 || f->lit.fog.on);
     for (int i = 0; i < 3; i++)
         light->first[i] = jittered ? lanes_load(q->light_first[i] + at)
                                    : lanes_of((uint32_t)f->light.first[i]);
     light->own = light->unequal ? light_samples_of(light->first, f)
                                 : lanes_of(light->samples);
+}
+
+LANES_INLINE void queued_position(uint32_t p[3], const struct queue *q,
+                                  uint32_t at)
+{
+    for (int i = 0; i < 3; i++)
+        p[i] = q->p[i][at];
 }
 
 LANES_INLINE lanes sun_transmittances(const struct brume_tau *t, lanes sum)

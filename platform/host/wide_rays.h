@@ -21,6 +21,8 @@ struct rays {
     lanes t;       /* of the first, Q16.16 */
     lanes unit[3]; /* direction, Q2.30 */
     lanes x, y;    /* of the grid */
+    lanes before;  /* in fog: samples before those in the pool, */
+    lanes samples; /* and all; t is of the first of these */
     lanes_mask alive;
 };
 
@@ -162,6 +164,32 @@ LANES_INLINE lanes with_signs(lanes m, lanes sign)
     return (m ^ sign) - sign;
 }
 
+LANES_INLINE lanes_mask less_signed(lanes a, lanes b)
+{
+    return mask_less(a ^ 0x80000000u, b ^ 0x80000000u);
+}
+
+/* The sum, or the most that there can be. */
+LANES_INLINE lanes held_sum(lanes a, lanes b)
+{
+    return lanes_select(mask_less(a + b, b), lanes_of(0xffffffffu), a + b);
+}
+
+/* brume_times, of a word as it is */
+LANES_INLINE lanes times_lanes(lanes a, struct brume_number n)
+{
+    lanes high = lanes_mul_hi(a, lanes_of(n.m)), low = a * n.m;
+    int32_t up = n.e + 32;
+    if (up <= 0)
+        return up > -32 ? high >> (uint32_t)-up : lanes_of(0);
+    lanes over = up > 31 ? high | low : high >> (32u - (uint32_t)up);
+    lanes product = up > 31
+                        ? lanes_of(0)
+                        : high << (uint32_t)up | low >> (32u - (uint32_t)up);
+    return lanes_select(mask_equal(over, lanes_of(0)), product,
+                        lanes_of(0xffffffffu));
+}
+
 /* mul_signed_round: a times b, which is not negative; up is 1 .. 7. */
 LANES_INLINE lanes mul_round_lanes(lanes a, lanes b, uint32_t up)
 {
@@ -174,6 +202,18 @@ LANES_INLINE lanes mul_round_lanes(lanes a, lanes b, uint32_t up)
 LANES_INLINE lanes mul_both_round_lanes(lanes a, lanes b, uint32_t up)
 {
     return with_signs(mul_round_lanes(a, magnitudes(b), up), signs_of(b));
+}
+
+/* The sum of mul_both_signed_round(axis, p, 0) over the axes. */
+LANES_INLINE lanes along_axis(const int32_t axis[3], const lanes p[3])
+{
+    lanes sum = lanes_of(0);
+    for (int i = 0; i < 3; i++) {
+        lanes m = lanes_of(magnitude(axis[i])), a = magnitudes(p[i]);
+        sum += with_signs(lanes_mul_hi(m, a) + (m * a >> 31),
+                          signs_of(p[i]) ^ sign_mask(axis[i]));
+    }
+    return sum;
 }
 
 /* brume_reciprocal */
@@ -383,17 +423,75 @@ LANES_INLINE lanes light_samples_of(const lanes first[3],
     return lanes_min(lanes_of(f->light_samples), lanes_leading_zeros(most));
 }
 
+/* brume_surface_distance of the rays that are alive */
+LANES_INLINE lanes surface_distances(const struct rays *r,
+                                     const struct brume_frame *f)
+{
+    uint32_t alive = mask_bits(r->alive);
+    lanes far = lanes_of(0xffffffffu);
+    for (uint32_t n = 0; n < WIDE_LANES; n++)
+        if (alive >> n & 1u)
+            far[n] = brume_surface_distance(f, r->x[n], r->y[n]);
+    return far;
+}
+
+/* brume_samples_before, of ends that are not all ones */
+LANES_INLINE lanes samples_before(lanes end, lanes t, lanes step)
+{
+    lanes_mask some = mask_less(t, end);
+    return lanes_where(
+        some, lanes_quotient(lanes_where(some, end - t - 1u), step) + 1u);
+}
+
 /* cut_at_surface, for r->alive; takes those away that have nothing left. */
 static inline void cut_lanes(struct rays *r, const struct brume_frame *f)
 {
-    uint32_t alive = mask_bits(r->alive);
-    lanes most = lanes_of(0);
-    for (uint32_t n = 0; n < WIDE_LANES; n++)
-        if (alive >> n & 1u)
-            most[n] = brume_samples_before(
-                brume_surface_distance(f, r->x[n], r->y[n]), r->t[n], f->step);
+    lanes far = surface_distances(r, f);
+    lanes most = lanes_select(mask_equal(far, lanes_of(0xffffffffu)), far,
+                              samples_before(far, r->t, lanes_of(f->step)));
     r->left = lanes_min(r->left, most);
     r->alive = mask_and(r->alive, mask_less(lanes_of(0), most));
+}
+
+/* time_of_edge */
+LANES_INLINE lanes times_of_edge(const struct brume_frame *f,
+                                 const lanes unit[3])
+{
+    const uint32_t edge = 0x7fff0000u;
+    lanes most = lanes_of(0xffffffffu);
+    for (int i = 0; i < 3; i++) {
+        lanes speed = magnitudes(unit[i]);
+        lanes room = lanes_select(mask_high(unit[i]),
+                                  lanes_of(edge + (uint32_t)f->eye[i]),
+                                  lanes_of(edge - (uint32_t)f->eye[i]));
+        lanes shift = lanes_min(lanes_leading_zeros(speed), lanes_of(31));
+        lanes t =
+            times_of(room, reciprocals(speed << shift | 0x80000000u), shift);
+        most = lanes_select(mask_less(lanes_of(0), speed), lanes_min(most, t),
+                            most);
+    }
+    return most;
+}
+
+/* begin_in_fog: those alive so far meet the pool, and in the end all that have
+ * a sample are. */
+static inline void begin_fog_lanes(struct rays *r, const struct brume_frame *f,
+                                   lanes jitter, lanes_mask wanted)
+{
+    lanes step = lanes_of(f->step), t = lanes_mul_hi(jitter << 16, step);
+    lanes end = lanes_min(lanes_of(f->lit.lighting->fog->far),
+                          times_of_edge(f, r->unit));
+    lanes_mask meets = r->alive;
+    r->alive = wanted;
+    if (brume_has_surface(f))
+        end = lanes_min(end, surface_distances(r, f));
+    r->samples = samples_before(end, t, step);
+    r->before = lanes_quotient(lanes_where(meets, r->t - t), step);
+    r->before =
+        lanes_min(lanes_select(meets, r->before, r->samples), r->samples);
+    r->left = lanes_min(lanes_where(meets, r->left), r->samples - r->before);
+    r->t = t;
+    r->alive = mask_and(wanted, mask_less(lanes_of(0), r->samples));
 }
 
 /* brume_ray_begin for the rays x, y of the lattice that are wanted. */
@@ -408,13 +506,15 @@ static inline void begin_lanes(struct rays *r, lanes light_first[3],
     r->y = y = (y << f->cell_log2[1]) + f->place[1];
     directions_of(r->unit, f, x, y);
     r->alive = mask_and(wanted, clip_lanes(f, r->unit, &t_in, &t_out));
-    if (!mask_any(r->alive))
+    if (!mask_any(r->alive) && !brume_has_fog(f))
         return;
     lanes jitter = jitter_lanes(f, x, y, 0);
     jitter = (jitter * f->strata >> 16) + f->stratum;
     enter_lanes(r, f, r->unit, jitter, t_in, t_out);
     r->left = counts_inside(r, f);
-    if (brume_has_surface(f))
+    if (brume_has_fog(f))
+        begin_fog_lanes(r, f, jitter, wanted);
+    else if (brume_has_surface(f))
         cut_lanes(r, f);
     if ((f->jitter & BRUME_JITTER_LIGHT) && f->light_kind != BRUME_UNIFORM)
         begin_light_lanes(light_first, f, jitter_lanes(f, x, y, 1));

@@ -6,6 +6,7 @@
 #ifndef BRUME_HOST_WIDE_SKY_H
 #define BRUME_HOST_WIDE_SKY_H
 
+#include "wide_lamps.h"
 #include "wide_lit.h"
 
 /* baked_sky */
@@ -17,6 +18,14 @@ LANES_INLINE lanes baked_skies(const struct brume_frame *f,
         v->sky, {v->cell_count[0], v->cell_count[1], v->cell_count[2]}, false};
     lanes p[3];
     queued_positions(p, f, &b->queue, at);
+    if (f->lit.fog.on) /* hold_in_pool */
+        for (int i = 0; i < 3; i++) {
+            lanes at_low = lanes_of(brume_half_voxel(f));
+            lanes q = lanes_load(b->queue.p[i] + at);
+            q = lanes_min(q, lanes_of(f->limit[i] - 1u));
+            q = lanes_unless(mask_high(lanes_load(b->queue.p[i] + at)), q);
+            p[i] = q + at_low;
+        }
     for (int i = 0; i < 3; i++)
         p[i] = (p[i] >> 3) - 0x8000u;
     return lanes_mul_hi(dense_lanes(b, &g, p, true) << 8,
@@ -48,7 +57,7 @@ static lanes sky_transmittances(lanes way[3], const struct brume_frame *f,
                                 struct patch *b, uint32_t at, uint32_t n)
 {
     struct ways *w = &b->lit.ways;
-    lanes local[3];
+    lanes local[3], p[3];
     sky_directions(local, f, b, at, n);
     for (int i = 0; i < 3; i++) {
         way[i] = lanes_of(0);
@@ -59,6 +68,14 @@ static lanes sky_transmittances(lanes way[3], const struct brume_frame *f,
         }
     }
     begin_ways(w, n, f->lit.sky_samples);
+    w->outside = mask_and(queued_outside(f, b, at), w->wanted);
+    if (mask_any(w->outside)) {
+        for (int i = 0; i < 3; i++)
+            p[i] = lanes_load(b->queue.p[i] + at);
+        lanes_mask away = mask_and(w->outside, lead_away(f, p, way));
+        w->wanted = mask_less_those(w->wanted, away);
+        w->outside = mask_less_those(w->outside, away);
+    }
     for (uint32_t k = 0; k < w->count; k++)
         put_doubled(w, way, k);
     return sun_transmittances(&f->lit.sky_tau, b->sum_ways(f, b, at));
@@ -68,13 +85,10 @@ static lanes sky_transmittances(lanes way[3], const struct brume_frame *f,
 LANES_INLINE lanes heights_of(const struct brume_frame *f,
                               const struct queue *q, uint32_t at)
 {
-    lanes above = lanes_of(0u - (uint32_t)f->lit.low);
-    for (int i = 0; i < 3; i++) {
-        lanes m = lanes_of(magnitude(f->lit.zenith[i]));
-        lanes p = lanes_load(q->p[i] + at);
-        above += with_signs(lanes_mul_hi(m, p) + (m * p >> 31),
-                            lanes_of(sign_mask(f->lit.zenith[i])));
-    }
+    lanes p[3];
+    for (int i = 0; i < 3; i++)
+        p[i] = lanes_load(q->p[i] + at);
+    lanes above = along_zeniths(f, p) - (uint32_t)f->lit.low;
     above = lanes_unless(mask_high(above), above);
     uint32_t up = (uint32_t)(f->lit.per_height.e + 62) & 31u;
     lanes height = lanes_mul_hi(above << up, lanes_of(f->lit.per_height.m))
