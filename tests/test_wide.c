@@ -139,6 +139,8 @@ static bool equal_copies(const struct wide_copy *a, const struct wide_copy *b)
             memcmp(a->bytes, b->bytes, a->bytes_size) == 0) &&
            (a->halves == NULL ||
             memcmp(a->halves, b->halves, 2 * a->halves_size) == 0) &&
+           (a->half_aprons == NULL || memcmp(a->half_aprons, b->half_aprons,
+                                             2 * a->half_aprons_size) == 0) &&
            (a->aprons == NULL ||
             memcmp(a->aprons, b->aprons, a->aprons_size) == 0) &&
            (a->octets == NULL ||
@@ -437,7 +439,8 @@ static void check_few(void)
                       wide_name(kernels[k]), filter ? "trilinear" : "nearest");
     }
     tap_check(no_room.halves == NULL && no_room.aprons == NULL &&
-                  no_room.octets == NULL && no_room.most == 100,
+                  no_room.half_aprons == NULL && no_room.octets == NULL &&
+                  no_room.most == 100,
               "copies that are too large are not made");
     wide_copy_free(&c);
     wide_copy_free(&no_room);

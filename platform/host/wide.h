@@ -47,23 +47,24 @@ int wide_march_rect(enum wide_kernel kernel, const struct brume_frame *frame,
  * memory gives no memory until they are written. Per occupied page:
  *
  *   bytes    1 byte a voxel, pages of 16^3    nearest, u8
- *   halves   2 bytes, pages of 16^3           nearest, u8r and u4r, and where
- *                                             a trilinear lookup needs ranges
- *                                             of several bricks, or a clamp
+ *   halves   2 bytes, pages of 16^3           nearest, u8r and u4r
+ *   half     2 bytes, 9^3 a cell              where a trilinear lookup needs
+ *   aprons                                    ranges of several bricks, or a
+ *                                             clamp
  *   octets   8 bytes, pages of 8^3            trilinear: a voxel and its seven
  *                                             neighbours above
  *   aprons   1 byte, 9^3 a cell               trilinear, u8 of which octets
  *                                             would take more than octets_most
  */
-#define WIDE_COPIES 5
-#define WIDE_APRON 729u /* bytes of a cell's */
+#define WIDE_COPIES 6
+#define WIDE_APRON 729u /* voxels of a cell's */
 struct wide_copy {
     const struct brume_volume *volume;
     size_t most;        /* bytes of address space that may still be taken */
     size_t octets_most; /* bytes of memory that octets of u8 may take */
-    size_t bytes_size, halves_size, aprons_size, octets_size;
+    size_t bytes_size, halves_size, aprons_size, half_aprons_size, octets_size;
     const uint8_t *bytes, *aprons;
-    const uint16_t *halves;
+    const uint16_t *halves, *half_aprons;
     const uint64_t *octets;
     const uint32_t *ranges; /* of the brick of each cell, else 0 */
     void *memory[WIDE_COPIES];

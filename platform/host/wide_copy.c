@@ -182,22 +182,43 @@ static uint64_t cells_of(const struct brume_volume *v)
     return (uint64_t)v->cell_count[0] * v->cell_count[1] * v->cell_count[2];
 }
 
-/* The voxels of a brick that the cell `down` below it has too: all of its own,
- * and of those beside it a face, an edge or a corner. Zeros are not written. */
-static void copy_part(const struct brume_volume *v, const uint8_t *from,
-                      uint8_t *to, const uint32_t down[3])
+/* What a cell has of a brick: the lowest voxel's place in its apron, and how
+ * many there are along each axis. */
+struct part {
+    size_t at;
+    uint32_t size[3];
+};
+
+/* The voxels of a brick that the cell below it by the bits of `down` has too:
+ * all that the brick's own has of it, `side`, or a face, an edge or a corner.
+ * False when that cell is below the pool. */
+static bool part_of(struct part *part, const struct brume_volume *v,
+                    const uint32_t cell[3], uint32_t down, uint32_t side)
 {
-    uint32_t end[3], side = v->side;
-    for (int i = 0; i < 3; i++)
-        end[i] = down[i] ? 1 : side;
-    for (uint32_t z = 0; z < end[2]; z++)
-        for (uint32_t y = 0; y < end[1]; y++)
-            for (uint32_t x = 0; x < end[0]; x++) {
+    size_t number = 0, place = 0;
+    for (int i = 2; i >= 0; i--) {
+        uint32_t below = down >> i & 1u;
+        if (cell[i] < below)
+            return false;
+        number = number * v->cell_count[i] + (cell[i] - below);
+        place = place * 9 + 8 * below;
+        part->size[i] = below ? 1 : side;
+    }
+    part->at = number * WIDE_APRON + place;
+    return true;
+}
+
+/* Zeros are not written. */
+static void copy_part(const struct part *part, const uint8_t *from,
+                      uint32_t side, uint8_t *to)
+{
+    to += part->at;
+    for (uint32_t z = 0; z < part->size[2]; z++)
+        for (uint32_t y = 0; y < part->size[1]; y++)
+            for (uint32_t x = 0; x < part->size[0]; x++) {
                 uint8_t code = from[x + side * (y + side * z)];
-                size_t i = x + 8 * down[0] + 9 * (y + 8 * down[1]) +
-                           81 * (z + 8 * down[2]);
                 if (code != 0)
-                    to[i] = code;
+                    to[x + 9 * y + 81 * z] = code;
             }
 }
 
@@ -207,16 +228,10 @@ static void copy_aprons(struct wide_copy *c, const uint32_t cell[3],
 {
     const struct brume_volume *v = c->volume;
     const uint8_t *from = v->pool + (size_t)brick * v->brick_bytes;
-    for (uint32_t n = 0; n < (v->side == 9 ? 1u : 8u); n++) {
-        const uint32_t down[3] = {n & 1u, n >> 1 & 1u, n >> 2};
-        uint32_t x = cell[0] - down[0], y = cell[1] - down[1];
-        uint32_t z = cell[2] - down[2];
-        if ((x | y | z) >> 31) /* below the pool */
-            continue;
-        size_t number =
-            ((size_t)z * v->cell_count[1] + y) * v->cell_count[0] + x;
-        copy_part(v, from, (uint8_t *)to + number * WIDE_APRON, down);
-    }
+    struct part part;
+    for (uint32_t n = 0; n < (v->side == 9 ? 1u : 8u); n++)
+        if (part_of(&part, v, cell, n, v->side))
+            copy_part(&part, from, v->side, to);
 }
 
 static void make_aprons(struct wide_copy *c, struct pool *pool)
@@ -229,6 +244,45 @@ static void make_aprons(struct wide_copy *c, struct pool *pool)
     for_bricks(c, pool, copy_aprons, to);
     c->aprons = to;
     c->aprons_size = (size_t)size;
+}
+
+/// Half aprons ///
+
+/* Densities of a brick's own voxels, whether it has an apron or not: those of
+ * the apron may be of another range. */
+static void copy_half_aprons(struct wide_copy *c, const uint32_t cell[3],
+                             uint32_t brick, void *to)
+{
+    const struct brume_volume *v = c->volume;
+    struct kernel k = KERNEL_OF(v->format, v->side - 8u, false, false, false);
+    uint32_t densities[256]; /* by code */
+    struct part part;
+    for (uint32_t i = 0; i < 256; i++)
+        densities[i] = density_of_code(v, brick, i, 0, k);
+    for (uint32_t n = 0; n < 8; n++) {
+        if (!part_of(&part, v, cell, n, 8))
+            continue;
+        uint16_t *at = (uint16_t *)to + part.at;
+        for (uint32_t z = 0; z < part.size[2]; z++)
+            for (uint32_t y = 0; y < part.size[1]; y++)
+                for (uint32_t x = 0; x < part.size[0]; x++) {
+                    uint32_t i = x + v->side * (y + v->side * z);
+                    uint32_t d = densities[code_of(v, brick, i)];
+                    if (d != 0)
+                        at[x + 9 * y + 81 * z] = (uint16_t)d;
+                }
+    }
+}
+
+static void make_half_aprons(struct wide_copy *c, struct pool *pool)
+{
+    uint64_t n = cells_of(c->volume) * WIDE_APRON;
+    uint16_t *to = reserve(c, 5, 2 * (n + WIDE_APRON), 2);
+    if (to == NULL)
+        return;
+    for_bricks(c, pool, copy_half_aprons, to);
+    c->half_aprons = to;
+    c->half_aprons_size = (size_t)n;
 }
 
 /// Octets ///
@@ -321,8 +375,10 @@ void wide_copy_prepare(struct wide_copy *copy, const struct brume_frame *frame,
     bool trilinear = frame->kernel >> 2 & 1, clamp = frame->kernel & 1;
     if (!trilinear && u8 && c->bytes == NULL)
         make_bytes(c, pool);
-    if ((trilinear ? clamp || (!u8 && v->side == 8) : !u8) && c->halves == NULL)
+    if (!trilinear && !u8 && c->halves == NULL)
         make_halves(c, pool);
+    if (trilinear && (clamp || (!u8 && v->side == 8)) && c->half_aprons == NULL)
+        make_half_aprons(c, pool);
     bool few = !u8 || (size_t)v->bricks * PAGE <= c->octets_most;
     if (trilinear && !clamp && few && c->octets == NULL)
         make_octets(c, pool);

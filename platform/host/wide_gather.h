@@ -98,6 +98,33 @@ GATHER(gather_halves, uint16_t, _mm_insert_epi16, 2)
 GATHER(gather_words, brume_word_t, _mm_insert_epi32, 1)
 #pragma GCC diagnostic pop
 
+/* Elements i[n] and the next of each, the first in the low half. */
+#if defined(__AVX2__)
+LANES_INLINE int two_halves(const uint16_t *from)
+{
+    uint32_t v;
+    memcpy(&v, from, sizeof v);
+    return (int)v;
+}
+#endif
+
+LANES_INLINE lanes gather_pairs_at(const uint16_t *p, const uint32_t *i)
+{
+#if defined(__AVX2__)
+    __m128i quad[LANES_QUADS];
+    for (int n = 0; n < LANES_QUADS; n++) {
+        uint64_t low = two_words(i + 4 * n), high = two_words(i + 4 * n + 2);
+        __m128i v = _mm_cvtsi32_si128(two_halves(p + (uint32_t)low));
+        v = _mm_insert_epi32(v, two_halves(p + (low >> 32)), 1);
+        v = _mm_insert_epi32(v, two_halves(p + (uint32_t)high), 2);
+        quad[n] = _mm_insert_epi32(v, two_halves(p + (high >> 32)), 3);
+    }
+    return lanes_join(quad);
+#else
+    return gather_halves_at(p, i) | gather_halves_at(p + 1, i) << 16;
+#endif
+}
+
 /// Tables ///
 
 /* table[i] of 256 elements, i < 256. With AVX-512 the table is in registers, by

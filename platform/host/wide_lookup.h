@@ -29,6 +29,9 @@ struct lookups {
     uint32_t y[LOOKUPS][WIDE_LANES];
     uint32_t z[LOOKUPS][WIDE_LANES];
     uint32_t weight[LOOKUPS][WIDE_LANES]; /* bytes, trilinear */
+    /* Trilinear lookups between voxels of several bricks, close together: where
+     * they are, and their place in d. */
+    uint32_t apart[4][(LOOKUPS + 1) * WIDE_LANES], apart_count;
 } __attribute__((aligned(64)));
 
 #define UNWANTED BRUME_CELL_EMPTY
@@ -227,11 +230,44 @@ LANES_INLINE lanes_mask on_high_faces(lanes x, lanes y, lanes z)
         mask_or(mask_equal(y & last, last), mask_equal(z & last, last)));
 }
 
+/* Group g's lookups of m are done later, by look_up_apart. A third of them all
+ * need voxels of several bricks, so that most vectors have some. */
+LANES_INLINE void set_apart(struct lookups *l, uint32_t g, lanes x, lanes y,
+                            lanes z, lanes_mask m)
+{
+    uint32_t at = l->apart_count;
+    lanes_pack(l->apart[0] + at, x, m);
+    lanes_pack(l->apart[1] + at, y, m);
+    lanes_pack(l->apart[2] + at, z, m);
+    lanes_pack(l->apart[3] + at, lanes_count() + g * WIDE_LANES, m);
+    l->apart_count = at + (uint32_t)__builtin_popcount(mask_bits(m));
+}
+
+/* Densities of the n lookups from number `at` of those apart on. */
+LANES_INLINE void put_apart(struct lookups *l, uint32_t at, uint32_t n,
+                            lanes density)
+{
+    uint32_t d[WIDE_LANES] __attribute__((aligned(64))), *to = l->d[0];
+    lanes_spill(d, density);
+    for (uint32_t i = 0; i < n; i++)
+        to[l->apart[3][at + i]] = d[i];
+}
+
+/* Positions of these, and how many they are. */
+LANES_INLINE uint32_t apart_at(const struct lookups *l, uint32_t at, lanes p[3])
+{
+    uint32_t left = l->apart_count - at;
+    for (int i = 0; i < 3; i++)
+        p[i] = lanes_load(l->apart[i] + at);
+    return left < WIDE_LANES ? left : WIDE_LANES;
+}
+
 LANES_INLINE void look_up_trilinear(struct lookups *l, uint32_t n,
                                     const struct brume_frame *f,
                                     struct kernel k)
 {
     look_up_cells(l, n, f);
+    l->apart_count = 0;
     for (uint32_t g = 0; g < n; g++) {
         lanes x = lanes_load(l->x[g]), y = lanes_load(l->y[g]);
         lanes z = lanes_load(l->z[g]), cell = lanes_load(l->cell[g]);
@@ -246,14 +282,20 @@ LANES_INLINE void look_up_trilinear(struct lookups *l, uint32_t n,
             lanes_mask rest = k.clamp ? mask_or(brick, near) : near;
             brick = mask_less_those(brick, rest);
             if (mask_any(rest)) {
-                d = lanes_where(rest, mix_anywhere(f, x, y, z, rest, k));
+                set_apart(l, g, x, y, z, rest);
                 /* Leaps count from a cell without density. */
                 lanes_store(l->cell[g], lanes_select(rest, lanes_of(0), cell));
             }
         }
         if (mask_any(brick))
-            d |= mix_in_bricks(f, cell, x, y, z, brick, k);
+            d = mix_in_bricks(f, cell, x, y, z, brick, k);
         lanes_store(l->d[g], d);
+    }
+    for (uint32_t at = 0; at < l->apart_count; at += WIDE_LANES) {
+        lanes p[3];
+        uint32_t some = apart_at(l, at, p);
+        put_apart(l, at, some,
+                  mix_anywhere(f, p[0], p[1], p[2], mask_first(some), k));
     }
 }
 
@@ -263,16 +305,19 @@ LANES_INLINE void look_up_trilinear(struct lookups *l, uint32_t n,
  * might change it for all that the compiler knows. */
 struct copied {
     const uint8_t *bytes, *aprons;
-    const uint16_t *halves;
+    const uint16_t *halves, *half_aprons;
     const uint64_t *octets;
     const uint32_t *ranges;
     lanes row, plane, end; /* elements from page to page; of the zero one */
     lanes max_density;
-    /* The same of the halves, where octets come first. */
-    lanes half_row, half_plane, half_end;
 };
 
-/* Does a kernel's lookup read aprons, or begin with octets? */
+/* What a kernel's lookup reads, or reads first, if it is trilinear. */
+LANES_INLINE bool reads_half_aprons(struct kernel k)
+{
+    return k.trilinear && k.clamp;
+}
+
 LANES_INLINE bool reads_aprons(struct kernel k)
 {
     return k.trilinear && !k.clamp && k.format == BRUME_U8 && k.side == 8;
@@ -288,28 +333,27 @@ LANES_INLINE struct copied copied_of(const struct brume_frame *f,
 {
     struct copied r;
     const uint16_t *n = f->volume->cell_count;
-    uint32_t row = (n[0] + 1u) / 2u, plane = row * ((n[1] + 1u) / 2u);
-    bool bytes = !k.trilinear && k.format == BRUME_U8;
+    size_t end = reads_octets(k)        ? c->octets_size
+                 : reads_aprons(k)      ? c->aprons_size
+                 : reads_half_aprons(k) ? c->half_aprons_size
+                 : k.format == BRUME_U8 ? c->bytes_size
+                                        : c->halves_size;
     r.bytes = c->bytes;
     r.halves = c->halves;
     r.aprons = c->aprons;
+    r.half_aprons = c->half_aprons;
     r.octets = c->octets;
     r.ranges = c->ranges;
     r.max_density = lanes_of(f->max_density);
-    r.half_row = lanes_of(row << 12);
-    r.half_plane = lanes_of(plane << 12);
-    r.half_end = lanes_of((uint32_t)(bytes ? c->bytes_size : c->halves_size));
-    if (!reads_octets(k) && !reads_aprons(k)) {
-        r.row = r.half_row;
-        r.plane = r.half_plane;
-        r.end = r.half_end;
-        return r;
+    r.end = lanes_of((uint32_t)end);
+    uint32_t page = 4096, across = (n[0] + 1u) / 2u, down = (n[1] + 1u) / 2u;
+    if (k.trilinear) {
+        page = reads_octets(k) ? 512u : WIDE_APRON;
+        across = n[0];
+        down = n[1];
     }
-    uint32_t page = reads_aprons(k) ? WIDE_APRON : 512u;
-    r.row = lanes_of(n[0] * page);
-    r.plane = lanes_of((uint32_t)n[0] * n[1] * page);
-    r.end =
-        lanes_of((uint32_t)(reads_aprons(k) ? c->aprons_size : c->octets_size));
+    r.row = lanes_of(across * page);
+    r.plane = lanes_of(across * down * page);
     return r;
 }
 
@@ -334,7 +378,7 @@ LANES_INLINE lanes number_in_cells(lanes x, lanes y, lanes z,
                                    const struct copied *c, struct kernel k)
 {
     lanes cell = (z >> 19) * c->plane + (y >> 19) * c->row;
-    if (reads_aprons(k))
+    if (!reads_octets(k))
         return cell + (x >> 19) * WIDE_APRON + (x >> 16 & 7u) +
                (y >> 16 & 7u) * 9u + (z >> 16 & 7u) * 81u;
     lanes voxel = (x >> 16 & 7u) | (y >> 13 & 56u) | (z >> 10 & 448u);
@@ -345,88 +389,83 @@ LANES_INLINE void want_copied(struct lookups *l, uint32_t g,
                               const struct copied *c, lanes x, lanes y, lanes z,
                               lanes_mask wanted, struct kernel k)
 {
-    if (reads_octets(k) || reads_aprons(k)) {
-        lanes at = number_in_cells(x, y, z, c, k);
-        lanes_store(l->at[g], lanes_select(wanted, at, c->end));
+    lanes at;
+    if (k.trilinear) {
+        at = number_in_cells(x, y, z, c, k);
         lanes_store(l->weight[g],
                     (x >> 8 & 255u) | (y & 0xff00u) | (z << 8 & 0xff0000u));
-    } else if (!k.trilinear) {
-        lanes at =
-            x_in_pages(x) + y_in_pages(y, c->row) + z_in_pages(z, c->plane);
-        lanes_store(l->at[g], lanes_select(wanted, at, c->end));
     } else {
-        lanes_store(l->voxel[g],
-                    lanes_select(wanted, lanes_of(0), lanes_of(UNWANTED)));
+        at = x_in_pages(x) + y_in_pages(y, c->row) + z_in_pages(z, c->plane);
     }
-    if (k.trilinear && !reads_aprons(k) && (k.clamp || k.side == 8)) {
-        lanes_store(l->x[g], x);
-        lanes_store(l->y[g], y);
-        lanes_store(l->z[g], z);
-    }
+    lanes_store(l->at[g], lanes_select(wanted, at, c->end));
 }
 
-/* Density of voxels of the halves. */
-LANES_INLINE lanes half_at(const struct copied *c, lanes at, lanes_mask wanted,
-                           struct kernel k)
+/* As trilinear_anywhere of the core, from half aprons; w: weights. */
+LANES_INLINE lanes mix_halves(const struct copied *c, const uint32_t *at,
+                              lanes w, struct kernel k)
 {
-    lanes d = gather_halves(c->halves, lanes_select(wanted, at, c->half_end));
-    return k.clamp ? lanes_min(d, c->max_density) : d;
-}
-
-/* As trilinear_anywhere of the core. */
-LANES_INLINE lanes mix_halves(const struct copied *c, lanes x, lanes y, lanes z,
-                              lanes_mask wanted, struct kernel k)
-{
-    lanes wx = x >> 8 & 255u, wy = y >> 8 & 255u, wz = z >> 8 & 255u;
-    lanes one = lanes_of(0x10000u), plane[2];
-    lanes x0 = x_in_pages(x), x1 = x_in_pages(x + one);
-    lanes y0 = y_in_pages(y, c->half_row),
-          y1 = y_in_pages(y + one, c->half_row);
-    for (uint32_t n = 0; n < 2; n++, z += one) {
-        lanes low = z_in_pages(z, c->half_plane) + y0, high = low - y0 + y1;
-        low = mix_lanes(half_at(c, low + x0, wanted, k),
-                        half_at(c, low + x1, wanted, k), wx);
-        high = mix_lanes(half_at(c, high + x0, wanted, k),
-                         half_at(c, high + x1, wanted, k), wx);
-        plane[n] = (mix_lanes(low, high, wy) + 128u) >> 8;
+    lanes wx = w & 255u, wy = w >> 8 & 255u, wz = w >> 16, plane[2];
+    for (uint32_t z = 0; z < 2; z++) {
+        lanes row[2];
+        for (uint32_t y = 0; y < 2; y++) {
+            lanes two = gather_pairs_at(c->half_aprons + 81 * z + 9 * y, at);
+            lanes a = two & 0xffffu, b = two >> 16;
+            if (k.clamp) {
+                a = lanes_min(a, c->max_density);
+                b = lanes_min(b, c->max_density);
+            }
+            row[y] = mix_lanes(a, b, wx);
+        }
+        plane[z] = (mix_lanes(row[0], row[1], wy) + 128u) >> 8;
     }
     return (mix_lanes(plane[0], plane[1], wz) + 0x8000u) >> 16;
 }
 
-/* From octets; but where these need the ranges of several bricks, halves. */
-LANES_INLINE lanes trilinear_copied(const struct lookups *l, uint32_t g,
+/* From octets; but where these need the ranges of several bricks, from half
+ * aprons: apart. */
+LANES_INLINE lanes trilinear_copied(struct lookups *l, uint32_t g,
                                     const struct copied *c, struct kernel k)
 {
-    lanes at = lanes_load(l->at[g]);
-    lanes d = mean_of_octets(c->octets, l->at[g], lanes_load(l->weight[g]));
+    lanes at = lanes_load(l->at[g]), w = lanes_load(l->weight[g]);
+    lanes d = mean_of_octets(c->octets, l->at[g], w);
     if (k.format == BRUME_U8)
         return d;
-    d = density_of(gather_words(c->ranges, at >> 9), d, 8, k);
+    lanes cell = at >> 9;
+    d = density_of(gather_words(c->ranges, cell), d, 8, k);
     if (k.side == 9)
         return d;
-    lanes x = lanes_load(l->x[g]), y = lanes_load(l->y[g]);
-    lanes z = lanes_load(l->z[g]);
-    lanes_mask face = mask_and(on_high_faces(x, y, z), mask_less(at, c->end));
-    return mask_any(face)
-               ? lanes_select(face, mix_halves(c, x, y, z, face, k), d)
-               : d;
+    lanes x = at & 7u, y = at >> 3 & 7u, z = at >> 6 & 7u, last = lanes_of(7);
+    lanes_mask face = mask_or(
+        mask_equal(x, last), mask_or(mask_equal(y, last), mask_equal(z, last)));
+    face = mask_and(face, mask_less(at, c->end));
+    if (mask_any(face))
+        set_apart(l, g, cell * WIDE_APRON + x + y * 9u + z * 81u, w, w, face);
+    return d;
+}
+
+LANES_INLINE void copied_apart(struct lookups *l, const struct copied *c,
+                               struct kernel k)
+{
+    for (uint32_t n = 0; n < l->apart_count; n += WIDE_LANES) {
+        uint32_t at[WIDE_LANES] __attribute__((aligned(64)));
+        lanes p[3];
+        uint32_t some = apart_at(l, n, p);
+        lanes_spill(at, lanes_where(mask_first(some), p[0]));
+        put_apart(l, n, some, mix_halves(c, at, p[1], k));
+    }
 }
 
 /* Density of group g. */
-LANES_INLINE lanes density_copied(const struct lookups *l, uint32_t g,
+LANES_INLINE lanes density_copied(struct lookups *l, uint32_t g,
                                   const struct copied *c, struct kernel k)
 {
     lanes d;
+    if (reads_half_aprons(k))
+        return mix_halves(c, l->at[g], lanes_load(l->weight[g]), k);
     if (reads_aprons(k))
         return mean_of_aprons(c->aprons, l->at[g], lanes_load(l->weight[g]));
-    if (reads_octets(k))
+    if (k.trilinear)
         return trilinear_copied(l, g, c, k);
-    if (k.trilinear) {
-        lanes_mask wanted = mask_less(lanes_load(l->voxel[g]), lanes_of(1));
-        d = mix_halves(c, lanes_load(l->x[g]), lanes_load(l->y[g]),
-                       lanes_load(l->z[g]), wanted, k);
-        return lanes_where(wanted, d);
-    }
     if (k.format == BRUME_U8) {
         d = gather_bytes_at(c->bytes, l->at[g]);
         return k.clamp ? lanes_min(d << 8, c->max_density) : d;
@@ -488,8 +527,11 @@ LANES_INLINE void look_up(struct lookups *l, uint32_t n, const struct source *s,
 {
     if (s->copy != NULL) {
         FORGET(l->at);
+        l->apart_count = 0;
         for (uint32_t g = 0; g < n; g++)
             lanes_store(l->d[g], density_copied(l, g, &s->copied, k));
+        if (reads_octets(k) && k.format != BRUME_U8)
+            copied_apart(l, &s->copied, k);
     } else if (k.trilinear) {
         look_up_trilinear(l, n, s->frame, k);
     } else {

@@ -127,7 +127,8 @@ struct march_kernel {
  * on whether light is uniform: of each two kernels, the step of the second is
  * that of frames with lighting instead. What it reads are the asset's bricks,
  * or copies (1). Of copies, aprons are those of u8, trilinear and `without an
- * apron' (0), octets with (1); halves serve u8r and u4r, clamped or not:
+ * apron' (0), octets with (1); halves, nearest and as aprons, serve u8r and u4r,
+ * clamped or not:
  * max_density is then above all densities. */
 #define NAME(what, format, apron, tri, uni, clamp, copied) \
     what##_##format##_##apron##tri##uni##clamp##copied
@@ -203,12 +204,12 @@ static const struct march_kernel *kernel_of(const struct brume_frame *f,
     if (!trilinear)
         return c->halves ? copied + (BRUME_U8R << 4) + 1 : direct;
     if (clamp)
-        return c->halves ? copied + (BRUME_U8R << 4) + 5 : direct;
+        return c->half_aprons ? copied + (BRUME_U8R << 4) + 5 : direct;
     if (u8)
         return c->octets   ? copied + (BRUME_U8 << 4) + 12
                : c->aprons ? copied + (BRUME_U8 << 4) + 4
                            : direct;
-    if (!c->octets || !c->ranges || (!apron && !c->halves))
+    if (!c->octets || !c->ranges || (!apron && !c->half_aprons))
         return direct;
     return copied + (BRUME_U8R << 4) + (apron ? 12 : 4);
 }
