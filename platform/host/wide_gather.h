@@ -278,13 +278,14 @@ LANES_INLINE lanes mean_of_octets(const uint64_t *p, const uint32_t *i, lanes w)
 #endif
 }
 
-/// Aprons ///
+/// Cubes ///
 
 /*
- * Bytes of 9^3 voxels a cell: rows are 9 bytes further, slices 81. The mean is
- * that of the same cube of eight, gathered as two vectors of four bytes: of the
- * lower and of the upper plane, x first. An eighth of the octets' bytes and a
- * half more than those of bricks: it is caches that make it the faster one.
+ * Bytes of side^3 voxels, of bricks or with an apron: rows are `side` further,
+ * slices its square. The mean is that of the same cube of eight, gathered as
+ * two vectors of four bytes: of the lower and of the upper plane, x first.
+ * Aprons take an eighth of the octets' bytes and a half more than bricks: it is
+ * caches that make them the faster ones.
  */
 #if defined(__AVX2__)
 
@@ -338,18 +339,20 @@ LANES_INLINE lanes mean_of_planes(const lanes four[2], lanes w)
 
 #endif
 
-LANES_INLINE lanes mean_of_aprons(const uint8_t *p, const uint32_t *i, lanes w)
+LANES_INLINE lanes mean_of_cubes(const uint8_t *p, uint32_t side,
+                                 const uint32_t *i, lanes w)
 {
 #if defined(__AVX2__)
-    const lanes four[2] = {gather_rows(p, i, 9), gather_rows(p + 81, i, 9)};
+    const lanes four[2] = {gather_rows(p, i, side),
+                           gather_rows(p + side * side, i, side)};
     return mean_of_planes(four, w);
 #else
     lanes wx = w & 255u, wy = w >> 8 & 255u, wz = w >> 16, plane[2];
-    for (int z = 0; z < 2; z++, p += 81) {
+    for (int z = 0; z < 2; z++, p += side * side) {
         lanes row[2];
-        for (int y = 0; y < 2; y++) {
-            lanes a = gather_bytes_at(p + 9 * y, i);
-            lanes b = gather_bytes_at(p + 9 * y + 1, i);
+        for (uint32_t y = 0; y < 2; y++) {
+            lanes a = gather_bytes_at(p + side * y, i);
+            lanes b = gather_bytes_at(p + side * y + 1, i);
             row[y] = (a << 8) + (b - a) * wx;
         }
         plane[z] = (row[0] << 8) + (row[1] - row[0]) * wy;

@@ -98,24 +98,6 @@ static lanes emission_anywhere(const struct brume_volume *v, const lanes p[3],
     return (mix_lanes(plane[0], plane[1], wz) + 0x8000u) >> 16;
 }
 
-/* The same from voxel number i of the grid on, where all are in one brick. */
-LANES_INLINE lanes emission_in_bricks(const uint8_t *codes, lanes i,
-                                      const lanes p[3])
-{
-    lanes wx = p[0] >> 8 & 255u, wy = p[1] >> 8 & 255u, wz = p[2] >> 8 & 255u;
-    lanes plane[2];
-    uint32_t at[WIDE_LANES] __attribute__((aligned(64)));
-    lanes_spill(at, i);
-    for (uint32_t n = 0; n < 2; n++, codes += 64) {
-        lanes low = mix_lanes(gather_bytes_at(codes, at),
-                              gather_bytes_at(codes + 1, at), wx);
-        lanes high = mix_lanes(gather_bytes_at(codes + 8, at),
-                               gather_bytes_at(codes + 9, at), wx);
-        plane[n] = mix_lanes(low, high, wy);
-    }
-    return (mix_lanes(plane[0], plane[1], wz) + 0x8000u) >> 16;
-}
-
 /* emission_between, where a lookup of density may find something: in bricks,
  * and beside them unless they have an apron, as lookups in these end with the
  * cell. Elsewhere the core does not ask. */
@@ -123,6 +105,7 @@ LANES_INLINE lanes emission_mixes(const struct brume_frame *f, const lanes p[3],
                                   lanes_mask wanted)
 {
     const struct brume_volume *v = f->volume;
+    uint32_t at_voxel[WIDE_LANES] __attribute__((aligned(64)));
     lanes at = lanes_where(wanted, cell_number(v, p[0], p[1], p[2]));
     lanes cell = gather_words(v->cells, at), m = lanes_of(0);
     lanes_mask face = on_high_faces(p[0], p[1], p[2]);
@@ -134,8 +117,10 @@ LANES_INLINE lanes emission_mixes(const struct brume_frame *f, const lanes p[3],
     brick = mask_less_those(brick, face);
     if (mask_any(brick)) {
         lanes i = (p[0] >> 16 & 7u) | (p[1] >> 13 & 56u) | (p[2] >> 10 & 448u);
-        i = lanes_where(brick, (cell << 9) + i);
-        m = lanes_where(brick, emission_in_bricks(v->emission, i, p));
+        lanes_spill(at_voxel, lanes_where(brick, (cell << 9) + i));
+        m = mean_of_cubes(v->emission, 8, at_voxel,
+                          weights_of(p[0], p[1], p[2]));
+        m = lanes_where(brick, m);
     }
     if (mask_any(face))
         m = lanes_select(face, emission_anywhere(v, p, face), m);

@@ -164,16 +164,24 @@ LANES_INLINE lanes codes_at(const struct brume_volume *v, lanes brick, lanes i,
     return code_of(gather_bytes(v->asset, at), i, k);
 }
 
-/* As trilinear_in_brick. */
-LANES_INLINE lanes mix_in_bricks(const struct brume_frame *f, lanes brick,
-                                 lanes x, lanes y, lanes z, lanes_mask wanted,
-                                 struct kernel k)
+/* Weights of the upper voxels, bytes. */
+LANES_INLINE lanes weights_of(lanes x, lanes y, lanes z)
 {
-    const struct brume_volume *v = f->volume;
-    lanes i = voxel_number(x, y, z, k), range = lanes_of(0);
-    lanes wx = x >> 8 & 255u, wy = y >> 8 & 255u, wz = z >> 8 & 255u;
-    lanes plane[2];
-    uint32_t side = k.side;
+    return (x >> 8 & 255u) | (y & 0xff00u) | (z << 8 & 0xff0000u);
+}
+
+/* Mean codes of cubes of voxels from number i of bricks on. */
+LANES_INLINE lanes mean_codes(const struct brume_volume *v, lanes brick,
+                              lanes i, lanes w, lanes_mask wanted,
+                              struct kernel k)
+{
+    uint32_t side = k.side, at[WIDE_LANES] __attribute__((aligned(64)));
+    if (k.format != BRUME_U4R) {
+        i += brick * (side == 9 ? 732u : 512u);
+        lanes_spill(at, lanes_where(wanted, i));
+        return mean_of_cubes(v->pool, side, at, w);
+    }
+    lanes wx = w & 255u, wy = w >> 8 & 255u, plane[2];
     for (uint32_t n = 0; n < 2; n++, i += side * side) {
         lanes low = mix_lanes(codes_at(v, brick, i, wanted, k),
                               codes_at(v, brick, i + 1u, wanted, k), wx);
@@ -182,7 +190,18 @@ LANES_INLINE lanes mix_in_bricks(const struct brume_frame *f, lanes brick,
                       codes_at(v, brick, i + (side + 1u), wanted, k), wx);
         plane[n] = mix_lanes(low, high, wy);
     }
-    lanes code = (mix_lanes(plane[0], plane[1], wz) + 0x8000u) >> 16;
+    return (mix_lanes(plane[0], plane[1], w >> 16) + 0x8000u) >> 16;
+}
+
+/* As trilinear_in_brick. */
+LANES_INLINE lanes mix_in_bricks(const struct brume_frame *f, lanes brick,
+                                 lanes x, lanes y, lanes z, lanes_mask wanted,
+                                 struct kernel k)
+{
+    const struct brume_volume *v = f->volume;
+    lanes range = lanes_of(0);
+    lanes code = mean_codes(v, brick, voxel_number(x, y, z, k),
+                            weights_of(x, y, z), wanted, k);
     if (k.format != BRUME_U8)
         range = gather_words(v->ranges, lanes_where(wanted, brick));
     return lanes_where(wanted, density_of(range, code, 8, k));
@@ -392,8 +411,7 @@ LANES_INLINE void want_copied(struct lookups *l, uint32_t g,
     lanes at;
     if (k.trilinear) {
         at = number_in_cells(x, y, z, c, k);
-        lanes_store(l->weight[g],
-                    (x >> 8 & 255u) | (y & 0xff00u) | (z << 8 & 0xff0000u));
+        lanes_store(l->weight[g], weights_of(x, y, z));
     } else {
         at = x_in_pages(x) + y_in_pages(y, c->row) + z_in_pages(z, c->plane);
     }
@@ -463,7 +481,7 @@ LANES_INLINE lanes density_copied(struct lookups *l, uint32_t g,
     if (reads_half_aprons(k))
         return mix_halves(c, l->at[g], lanes_load(l->weight[g]), k);
     if (reads_aprons(k))
-        return mean_of_aprons(c->aprons, l->at[g], lanes_load(l->weight[g]));
+        return mean_of_cubes(c->aprons, 9, l->at[g], lanes_load(l->weight[g]));
     if (k.trilinear)
         return trilinear_copied(l, g, c, k);
     if (k.format == BRUME_U8) {
