@@ -3,7 +3,7 @@
  * The cache of the sun's optical depth, made on the device: rows of points at
  * a time, so that a sun that moves costs a little of each frame.
  */
-#include "brume_inner.h"
+#include "brume_dense.h"
 
 #if BRUME_WITH_CACHE
 
@@ -54,17 +54,6 @@ int brume_cache_begin(struct brume_cache *cache,
     return BRUME_OK;
 }
 
-/* round(24 log2(1 + depth / unit)) */
-static uint8_t code_of(struct brume_number depth, struct brume_number per_unit)
-{
-    static const struct brume_number k_one = {0x80000000u, -31};
-    struct brume_number x =
-        brume_number_plus(k_one, brume_number_mul(depth, per_unit));
-    uint32_t y = (uint32_t)brume_log2(x); /* Q16.16, < 1024 */
-    uint32_t q = (y * 24u + 0x8000u) >> 16;
-    return (uint8_t)(q < 255u ? q : 255u);
-}
-
 int brume_cache_rows(const struct brume_cache *cache, uint8_t *codes,
                      const struct brume_frame *frame, uint32_t row,
                      uint32_t rows)
@@ -82,18 +71,15 @@ int brume_cache_rows(const struct brume_cache *cache, uint8_t *codes,
     if (!f->lit.on || f->lit.light == BRUME_CACHE ||
         f->lit.light == BRUME_NO_LIGHT)
         return BRUME_ERR_SCENE;
-    struct brume_number per_unit = {0, 0};
-    if (cache->unit.m != 0)
-        per_unit = brume_number_inverse(cache->unit);
+    struct brume_number per_unit = units_of_cache(cache);
     for (uint32_t r = row; r < row + rows; r++) {
         uint32_t p[3] = {0, r % cache->size[1], r / cache->size[1]};
         for (int i = 1; i < 3; i++)
-            p[i] = ((2u * p[i] + 1u) << (15u + s)) - half;
+            p[i] = middle_of_point(p[i], s) - half;
         for (uint32_t x = 0; x < cache->size[0]; x++) {
-            p[0] = ((2u * x + 1u) << (15u + s)) - half;
-            struct brume_number depth = brume_number_mul(
-                brume_number_of(brume_lit_sun_sum(f, p), 0), f->lit.sun_unit);
-            codes[r * cache->size[0] + x] = code_of(depth, per_unit);
+            p[0] = middle_of_point(x, s) - half;
+            codes[r * cache->size[0] + x] =
+                code_of_sum(f, brume_lit_sun_sum(f, p), per_unit);
         }
     }
     return BRUME_OK;

@@ -24,6 +24,35 @@ static inline uint32_t depth_of_code(uint32_t q)
     return ((uint32_t)k_power[q - 24u * octave] << octave) - 8192u;
 }
 
+#if BRUME_WITH_CACHE
+/* 1 / unit of a cache; 0 when all is empty. */
+static inline struct brume_number units_of_cache(const struct brume_cache *c)
+{
+    struct brume_number none = {0, 0};
+    return c->unit.m != 0 ? brume_number_inverse(c->unit) : none;
+}
+
+/* round(24 log2(1 + depth / unit)) of a sum towards the sun */
+static inline uint8_t code_of_sum(const struct brume_frame *f, uint32_t sum,
+                                  struct brume_number per_unit)
+{
+    static const struct brume_number k_one = {0x80000000u, -31};
+    struct brume_number depth =
+        brume_number_mul(brume_number_of(sum, 0), f->lit.sun_unit);
+    struct brume_number x =
+        brume_number_plus(k_one, brume_number_mul(depth, per_unit));
+    uint32_t y = (uint32_t)brume_log2(x); /* Q16.16, < 1024 */
+    uint32_t q = (y * 24u + 0x8000u) >> 16;
+    return (uint8_t)(q < 255u ? q : 255u);
+}
+
+/* Where point i of a cache is along an axis, Q16.16. */
+static inline uint32_t middle_of_point(uint32_t i, uint32_t spacing_log2)
+{
+    return (2u * i + 1u) << (15u + spacing_log2);
+}
+#endif
+
 /* The point itself: depth as above, or a plain value in Q8.16. */
 static inline uint32_t dense_at(const struct dense *g, uint32_t x, uint32_t y,
                                 uint32_t z)

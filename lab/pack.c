@@ -105,8 +105,8 @@ static int draw(struct packed *p, const struct lab_options *o, uint32_t frame,
         return 2;
     }
     const struct render_target target = {BRUME_L16, p->picture, row, NULL};
-    if (sun_cache_prepare(&p->sun, renderer_pool(p->renderer), &p->file.volume,
-                          scene, &p->light, err, err_size) != 0 ||
+    if (sun_cache_prepare(&p->sun, p->renderer, &p->file.volume, scene,
+                          &p->light, err, err_size) != 0 ||
         renderer_draw(p->renderer, scene, &target, err, err_size) != 0)
         return 2;
     return 0;

@@ -100,8 +100,8 @@ static int draw(struct run *r, const struct brume_scene *scene,
     double start = profile_process();
     if (scene->width != to->width || scene->height != to->height)
         return fail(r, "a path cannot change the size");
-    if (sun_cache_prepare(&r->sun, renderer_pool(r->renderer), &r->file.volume,
-                          scene, &r->light, r->err, r->err_size) != 0 ||
+    if (sun_cache_prepare(&r->sun, r->renderer, &r->file.volume, scene,
+                          &r->light, r->err, r->err_size) != 0 ||
         renderer_draw(r->renderer, scene, &target, r->err, r->err_size) != 0)
         return 2;
     r->ms = 1000 * (profile_process() - start);

@@ -237,6 +237,68 @@ static void check_refusals(const struct test_volumes *volumes)
     }
 }
 
+/// Cache ///
+
+/* The frame whose light goes into a cache. */
+static void light_frame(struct brume_frame *f, const struct brume_volume *v,
+                        int filter)
+{
+    static const struct brume_lighting k_white = {
+        .sun_colour = {0x10000, 0x10000, 0x10000}};
+    struct brume_scene scene;
+    brume_scene_default(&scene, v);
+    scene.lighting = &k_white;
+    scene.light = BRUME_UNIFORM;
+    scene.light_samples = 40;
+    scene.light_step = 0x28000;
+    scene.filter = (uint8_t)filter;
+    scene.noise = BRUME_NOISE_NONE;
+    scene.jitter = BRUME_JITTER_NONE;
+    if (brume_begin_frame(f, v, &scene) != BRUME_OK)
+        abort();
+}
+
+/* Are the codes of a kernel those of the core? */
+static bool same_codes(enum wide_kernel kernel, const struct wide_copy *copy,
+                       const struct brume_frame *f, unsigned spacing_log2)
+{
+    size_t n = brume_cache_bytes(f->volume, spacing_log2);
+    uint8_t *is = malloc(n), *should = malloc(n);
+    struct brume_cache c;
+    if (is == NULL || should == NULL ||
+        brume_cache_begin(&c, f->volume, spacing_log2, should) != BRUME_OK)
+        abort();
+    uint32_t rows = (uint32_t)c.size[1] * c.size[2], half = rows / 2;
+    bool good =
+        brume_cache_rows(&c, should, f, 0, rows) == BRUME_OK &&
+        wide_cache_rows(kernel, copy, &c, is, f, 0, half) == BRUME_OK &&
+        wide_cache_rows(kernel, copy, &c, is, f, half, rows - half) ==
+            BRUME_OK &&
+        memcmp(is, should, n) == 0 &&
+        wide_cache_rows(kernel, copy, &c, is, f, 1, rows) == BRUME_ERR_RECT &&
+        wide_cache_rows(kernel, copy, &c, NULL, f, 0, 1) == BRUME_ERR_NULL;
+    free(is);
+    free(should);
+    return good;
+}
+
+static void check_caches(const struct test_volumes *volumes)
+{
+    for (int k = 0; k < kernel_count; k++) {
+        bool good = true;
+        for (int which = 0; which < 9; which++) /* the small ones */
+            for (int filter = 0; filter < 2; filter++) {
+                struct brume_frame f;
+                light_frame(&f, &volumes->item[which].volume, filter);
+                wide_copy_prepare(&copies[which], &f, NULL);
+                for (unsigned log2 = 1; log2 < 4; log2++)
+                    good = good && same_codes(kernels[k], NULL, &f, log2) &&
+                           same_codes(kernels[k], &copies[which], &f, log2);
+            }
+        tap_check(good, "%s: codes of caches", wide_name(kernels[k]));
+    }
+}
+
 /// Random scenes ///
 
 static uint32_t random_state = 2463534242u;
@@ -476,6 +538,7 @@ int main(int argc, char **argv)
     check_rectangles(&volumes);
     check_refusals(&volumes);
     check_few();
+    check_caches(&volumes);
     check_random(&volumes);
     check_scenes(&volumes);
     for (int i = 0; i < volumes.count; i++)

@@ -4,8 +4,8 @@
 #include <time.h>
 
 static const char *const k_names[PASSES] = {
-    "open",    "begin", "copy", "march",  "store",
-    "resolve", "show",  "pack", "encode", "write"};
+    "open",    "begin", "cache", "copy",   "march", "store",
+    "resolve", "show",  "pack",  "encode", "write"};
 
 static double seconds(clockid_t clock)
 {
@@ -38,6 +38,16 @@ double profile_add(struct profile *p, enum pass pass, double from)
     now = profile_now();
     p->busy[pass] += now - from;
     p->reads[pass]++;
+    return now;
+}
+
+double profile_add_process(struct profile *p, enum pass pass, double from)
+{
+    double now;
+    if (p == NULL)
+        return 0;
+    now = profile_process();
+    p->busy[pass] += now - from;
     return now;
 }
 

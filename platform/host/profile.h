@@ -12,6 +12,7 @@
 enum pass {
     PASS_OPEN,    /* mapping and checking volumes */
     PASS_BEGIN,   /* tables of the frame */
+    PASS_CACHE,   /* depths towards the sun, of light = cache */
     PASS_COPY,    /* the volume in another order, for wide kernels */
     PASS_MARCH,   /* rays */
     PASS_STORE,   /* rays into the state */
@@ -39,6 +40,8 @@ double profile_clock(void);
 
 /* Adds the time since `from`, and returns now. NULL: nothing is measured. */
 double profile_add(struct profile *p, enum pass pass, double from);
+/* The same of profile_process, for what all threads do together. */
+double profile_add_process(struct profile *p, enum pass pass, double from);
 
 void profile_sum(struct profile *to, const struct profile *from);
 

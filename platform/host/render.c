@@ -279,6 +279,14 @@ static void sweep_over(struct sweep *s, const unsigned size[2],
     pool_run(r->pool, task, s, s->across * down);
 }
 
+/* What the wide kernels read for a frame. */
+static void copy_volume(struct renderer *r, const struct brume_frame *f)
+{
+    double now = r->profile != NULL ? profile_process() : 0;
+    wide_copy_prepare(&r->copy, f, r->pool);
+    profile_add_process(r->profile, PASS_COPY, now);
+}
+
 /// Memory ///
 
 struct renderer *renderer_new(int threads, enum wide_kernel kernel)
@@ -443,16 +451,61 @@ int renderer_draw(struct renderer *renderer, const struct brume_scene *scene,
         move_to_anchor(r);
         error = brume_begin_state(r->state, &r->frame);
     }
-    now = profile_add(r->profile, PASS_BEGIN, now);
+    profile_add(r->profile, PASS_BEGIN, now);
     if (!error)
-        wide_copy_prepare(&r->copy, &r->frame, r->pool);
-    profile_add(r->profile, PASS_COPY, now);
+        copy_volume(r, &r->frame);
     if (!error)
         error = draw_passes(r, &r->frame, plain, taa, target);
     collect(r);
     if (error)
         snprintf(err, err_size, "%s", brume_error_text(error));
     return error ? -1 : 0;
+}
+
+/// Cache ///
+
+/* Rows of a cache that a task computes. */
+#define TASK_ROWS 32u
+
+struct fill {
+    const struct renderer *renderer;
+    const struct brume_cache *cache;
+    uint8_t *codes;
+    const struct brume_frame *light;
+    uint32_t rows;
+    atomic_int error; /* the first one */
+};
+
+static void fill_rows(void *arg, unsigned task, unsigned worker)
+{
+    struct fill *fill = arg;
+    const struct renderer *r = fill->renderer;
+    uint32_t first = task * TASK_ROWS, rows = fill->rows - first;
+    int none = BRUME_OK;
+    (void)worker;
+    int error = wide_cache_rows(r->kernel, &r->copy, fill->cache, fill->codes,
+                                fill->light, first,
+                                rows < TASK_ROWS ? rows : TASK_ROWS);
+    if (error)
+        atomic_compare_exchange_strong(&fill->error, &none, error);
+}
+
+int renderer_fill_cache(struct renderer *renderer,
+                        const struct brume_cache *cache, uint8_t *codes,
+                        const struct brume_frame *light)
+{
+    struct fill fill = {.renderer = renderer,
+                        .cache = cache,
+                        .codes = codes,
+                        .light = light,
+                        .rows = (uint32_t)cache->size[1] * cache->size[2]};
+    atomic_init(&fill.error, BRUME_OK);
+    copy_volume(renderer, light);
+    double now = renderer->profile != NULL ? profile_process() : 0;
+    pool_run(renderer->pool, fill_rows, &fill,
+             (fill.rows + TASK_ROWS - 1) / TASK_ROWS);
+    profile_add_process(renderer->profile, PASS_CACHE, now);
+    return atomic_load(&fill.error);
 }
 
 void render_frame(const struct brume_frame *frame, int pixel_format, void *dst,

@@ -51,6 +51,12 @@ void renderer_volume(struct renderer *renderer,
  * together. (0,0,0) at first. */
 void renderer_anchor(struct renderer *renderer, const int32_t voxels[3]);
 
+/* The codes of a cache of the volume, by the light of a frame of it (see
+ * brume_cache_rows). A code of enum brume_error. */
+int renderer_fill_cache(struct renderer *renderer,
+                        const struct brume_cache *cache, uint8_t *codes,
+                        const struct brume_frame *light);
+
 /* One frame, after those before it. */
 int renderer_draw(struct renderer *renderer, const struct brume_scene *scene,
                   const struct render_target *target, char *err,

@@ -262,12 +262,9 @@ static int draw(struct run *r, const struct brume_scene *scene)
         brume_row_bytes(r->pixel_format, scene->width),
         (const uint32_t(*)[3])r->over.linear};
     const uint16_t *wide = r->packed;
-    double now = r->sequence->profile ? profile_process() : 0;
-    if (sun_cache_prepare(&r->sun, renderer_pool(r->renderer), &r->file.volume,
-                          scene, &r->light, r->err, r->err_size) != 0)
+    if (sun_cache_prepare(&r->sun, r->renderer, &r->file.volume, scene,
+                          &r->light, r->err, r->err_size) != 0)
         return -1;
-    if (r->sequence->profile)
-        r->frame.busy[PASS_BEGIN] += profile_process() - now;
     if (renderer_draw(r->renderer, scene, &target, r->err, r->err_size) != 0)
         return -1;
     for (size_t i = 0; r->is_float && i < image_samples(&r->image); i++)

@@ -2,12 +2,9 @@
 #include "sun_cache.h"
 
 #include <math.h>
-#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Lines of the cache that a task computes. */
-#define TASK_ROWS 32u
 /* A baked cache is of this sun when their directions are so near: the cosine
  * of a quarter of a degree. */
 #define SAME_SUN 0.99999048
@@ -47,26 +44,6 @@ static bool baked_fits(const struct brume_volume *volume,
 
 /// Computed ///
 
-struct job {
-    struct sun_cache *cache;
-    const struct brume_frame *frame;
-    uint32_t rows;
-    atomic_int error;
-};
-
-static void compute_rows(void *arg, unsigned task, unsigned worker)
-{
-    struct job *job = arg;
-    uint32_t first = task * TASK_ROWS, rows = job->rows - first;
-    int none = BRUME_OK;
-    (void)worker;
-    int error =
-        brume_cache_rows(&job->cache->cache, job->cache->codes, job->frame,
-                         first, rows < TASK_ROWS ? rows : TASK_ROWS);
-    if (error)
-        atomic_compare_exchange_strong(&job->error, &none, error);
-}
-
 /* The frame whose light goes into the cache: of all the scene says, what
  * decides on depths towards the sun. */
 static void light_scene(const struct brume_scene *scene,
@@ -99,12 +76,11 @@ static bool is_same(const struct sun_cache *c, const struct brume_scene *scene,
            was->max_density == scene->max_density;
 }
 
-static int compute(struct sun_cache *c, struct pool *pool,
+static int compute(struct sun_cache *c, struct renderer *renderer,
                    const struct brume_volume *volume,
                    const struct brume_scene *scene, unsigned spacing_log2)
 {
     struct brume_frame frame;
-    struct job job = {.cache = c, .frame = &frame};
     sun_cache_free(c);
     light_scene(scene, &c->scene);
     int error = brume_begin_frame(&frame, volume, &c->scene);
@@ -115,16 +91,14 @@ static int compute(struct sun_cache *c, struct pool *pool,
     if (c->codes == NULL)
         return BRUME_ERR_SIZE;
     error = brume_cache_begin(&c->cache, volume, spacing_log2, c->codes);
-    job.rows = (uint32_t)c->cache.size[1] * c->cache.size[2];
-    atomic_init(&job.error, error);
-    pool_run(pool, compute_rows, &job, (job.rows + TASK_ROWS - 1) / TASK_ROWS);
-    error = atomic_load(&job.error);
+    if (!error)
+        error = renderer_fill_cache(renderer, &c->cache, c->codes, &frame);
     if (error)
         sun_cache_free(c);
     return error;
 }
 
-int sun_cache_prepare(struct sun_cache *cache, struct pool *pool,
+int sun_cache_prepare(struct sun_cache *cache, struct renderer *renderer,
                       const struct brume_volume *volume,
                       const struct brume_scene *scene,
                       struct scene_light *light, char *err, size_t err_size)
@@ -140,7 +114,7 @@ int sun_cache_prepare(struct sun_cache *cache, struct pool *pool,
     if (baked_fits(volume, scene, asked))
         error = brume_cache_baked(&light->cache, volume);
     else if (!is_same(cache, scene, spacing))
-        error = compute(cache, pool, volume, scene, spacing);
+        error = compute(cache, renderer, volume, scene, spacing);
     if (!error && !baked_fits(volume, scene, asked))
         light->cache = cache->cache;
     if (error)

@@ -9,7 +9,7 @@
 #ifndef BRUME_HOST_SUN_CACHE_H
 #define BRUME_HOST_SUN_CACHE_H
 
-#include "pool.h"
+#include "render.h"
 #include "scene_light.h"
 
 /* All zero: nothing yet. */
@@ -20,8 +20,9 @@ struct sun_cache {
 };
 
 /* Points light->lighting at a cache for the scene, when its light is one. The
- * scene is one that *light was filled for, of this volume. */
-int sun_cache_prepare(struct sun_cache *cache, struct pool *pool,
+ * scene is one that *light was filled for, of this volume, which is the
+ * renderer's. */
+int sun_cache_prepare(struct sun_cache *cache, struct renderer *renderer,
                       const struct brume_volume *volume,
                       const struct brume_scene *scene,
                       struct scene_light *light, char *err, size_t err_size);

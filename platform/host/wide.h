@@ -93,6 +93,13 @@ int wide_march_copy_rect(enum wide_kernel kernel, const struct wide_copy *copy,
                          unsigned y, unsigned w, unsigned h,
                          struct brume_radiance *out, size_t stride);
 
+/* As brume_cache_rows, and the same codes, by the copies if what the frame needs
+ * was prepared. Frames of uniform light are done in lanes. */
+int wide_cache_rows(enum wide_kernel kernel, const struct wide_copy *copy,
+                    const struct brume_cache *cache, uint8_t *codes,
+                    const struct brume_frame *frame, uint32_t row,
+                    uint32_t rows);
+
 void wide_copy_free(struct wide_copy *copy);
 
 #endif

@@ -287,57 +287,95 @@ static void make_half_aprons(struct wide_copy *c, struct pool *pool)
 
 /// Octets ///
 
+/* Two voxels of a row. */
+static uint64_t two_of(const uint8_t *from)
+{
+    return (uint64_t)from[0] | (uint64_t)from[1] << 8;
+}
+
+/* The octets of a cell's voxels below `end` on each axis, from codes whose rows
+ * and slices are that of a brick of that side. */
+static void put_octets(uint64_t *page, const uint8_t *codes, uint32_t side,
+                       uint32_t end)
+{
+    const uint32_t slice = side * side;
+    for (uint32_t z = 0; z < end; z++)
+        for (uint32_t y = 0; y < end; y++) {
+            const uint8_t *low = codes + z * slice + y * side;
+            uint64_t *to = page + (z << 6 | y << 3);
+            for (uint32_t x = 0; x < end; x++, low++)
+                to[x] = two_of(low) | two_of(low + side) << 16 |
+                        two_of(low + slice) << 32 |
+                        two_of(low + slice + side) << 48;
+        }
+}
+
+static uint64_t *octets_of(const struct brume_volume *v, void *to,
+                           const uint32_t cell[3])
+{
+    size_t number =
+        ((size_t)cell[2] * v->cell_count[1] + cell[1]) * v->cell_count[0] +
+        cell[0];
+    return (uint64_t *)to + (number << 9);
+}
+
 /* Those of one brick: of its apron, or of voxels that have all neighbours in
  * it. */
 static void copy_octets_inside(struct wide_copy *c, const uint32_t cell[3],
                                uint32_t brick, void *to)
 {
     const struct brume_volume *v = c->volume;
-    uint32_t side = v->side, row = v->cell_count[0];
-    size_t number =
-        ((size_t)cell[2] * v->cell_count[1] + cell[1]) * row + cell[0];
-    uint64_t *page = (uint64_t *)to + (number << 9);
-    for (uint32_t z = 0; z < side - 1u; z++)
-        for (uint32_t y = 0; y < side - 1u; y++)
-            for (uint32_t x = 0; x < side - 1u; x++) {
-                uint64_t octet = 0;
-                for (uint32_t n = 0; n < 8; n++) {
-                    uint32_t i =
-                        x + (n & 1u) +
-                        side * (y + (n >> 1 & 1u) + side * (z + (n >> 2)));
-                    octet |= (uint64_t)code_of(v, brick, i) << 8 * n;
-                }
-                page[z << 6 | y << 3 | x] = octet;
-            }
+    uint32_t side = v->side;
+    uint8_t codes[729];
+    for (uint32_t i = 0; i < side * side * side; i++)
+        codes[i] = (uint8_t)code_of(v, brick, i);
+    put_octets(octets_of(v, to, cell), codes, side, side - 1u);
 }
 
-/* The octets that a voxel is a byte of, in up to eight cells. */
-static void add_voxel(struct wide_copy *c, uint64_t *to, uint32_t x, uint32_t y,
-                      uint32_t z, uint64_t code)
+/* A cell's codes with an apron, of the bricks above it; false when there are
+ * none. */
+static bool apron_of(const struct brume_volume *v, const uint32_t cell[3],
+                     uint8_t codes[WIDE_APRON])
 {
-    const struct brume_volume *v = c->volume;
+    bool any = false;
+    memset(codes, 0, WIDE_APRON);
     for (uint32_t n = 0; n < 8; n++) {
-        uint32_t a = x - (n & 1u), b = y - (n >> 1 & 1u), d = z - (n >> 2);
-        if ((a | b | d) >> 31) /* below the pool */
+        uint64_t number = 0;
+        uint32_t end[3];
+        size_t place = 0;
+        bool inside = true;
+        for (int i = 2; i >= 0; i--) {
+            uint32_t above = n >> i & 1u;
+            inside = inside && cell[i] + above < v->cell_count[i];
+            number = number * v->cell_count[i] + cell[i] + above;
+            place = place * 9 + 8 * above;
+            end[i] = above ? 1 : 8;
+        }
+        if (!inside || brick_of(v, number) < 0)
             continue;
-        size_t number = ((size_t)(d >> 3) * v->cell_count[1] + (b >> 3)) *
-                            v->cell_count[0] +
-                        (a >> 3);
-        to[number << 9 | (d & 7u) << 6 | (b & 7u) << 3 | (a & 7u)] |= code
-                                                                      << 8 * n;
+        const uint8_t *from = v->pool + (size_t)brick_of(v, number) * 512;
+        for (uint32_t z = 0; z < end[2]; z++)
+            for (uint32_t y = 0; y < end[1]; y++)
+                memcpy(codes + place + 81 * z + 9 * y, from + 64 * z + 8 * y,
+                       end[0]);
+        any = true;
     }
+    return any;
 }
 
-static void copy_octets(struct wide_copy *c, const uint32_t cell[3],
-                        uint32_t brick, void *to)
+/* u8 without an apron: a cell's octets have bytes of its neighbours' bricks,
+ * and so may those of a cell without one. */
+static void do_octets(void *arg, unsigned task, unsigned worker)
 {
-    for (uint32_t i = 0; i < 512; i++) {
-        uint32_t code = code_of(c->volume, brick, i);
-        if (code != 0)
-            add_voxel(c, to, cell[0] << 3 | (i & 7u),
-                      cell[1] << 3 | (i >> 3 & 7u), cell[2] << 3 | i >> 6,
-                      code);
-    }
+    const struct brick_job *job = arg;
+    const struct brume_volume *v = job->copy->volume;
+    uint32_t cell[3] = {0, 0, task};
+    uint8_t codes[WIDE_APRON];
+    (void)worker;
+    for (; cell[1] < v->cell_count[1]; cell[1]++)
+        for (cell[0] = 0; cell[0] < v->cell_count[0]; cell[0]++)
+            if (apron_of(v, cell, codes))
+                put_octets(octets_of(v, job->to, cell), codes, 9, 8);
 }
 
 static void make_octets(struct wide_copy *c, struct pool *pool)
@@ -348,7 +386,11 @@ static void make_octets(struct wide_copy *c, struct pool *pool)
     uint64_t *to = reserve(c, 2, 8 * n, 8);
     if (to == NULL)
         return;
-    for_bricks(c, pool, inside ? copy_octets_inside : copy_octets, to);
+    struct brick_job job = {c, NULL, to, 0};
+    if (inside)
+        for_bricks(c, pool, copy_octets_inside, to);
+    else
+        pool_run(pool, do_octets, &job, v->cell_count[2]);
     c->octets = to;
     c->octets_size = (size_t)n;
 }

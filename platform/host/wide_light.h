@@ -192,7 +192,8 @@ LANES_INLINE void light_uniform(const struct brume_frame *f,
                                 uint32_t end, struct kernel k)
 {
     struct light_wave w;
-    uint32_t sums ROOM(QUEUE), next = 0;
+    uint32_t own ROOM(QUEUE), *sums = b->sums != NULL ? b->sums : own;
+    uint32_t next = 0;
     begin_light_wave(f, &w);
     for (;;) {
         fill_light_wave(f, &w, b, &next, end);
@@ -206,7 +207,7 @@ LANES_INLINE void light_uniform(const struct brume_frame *f,
             to += step_light_group(s, &w, &b->lookups, g, to, sums, k);
         w.count = to;
     }
-    for (uint32_t at = 0; at < end; at += WIDE_LANES) {
+    for (uint32_t at = 0; b->sums == NULL && at < end; at += WIDE_LANES) {
         uint32_t n = end - at < WIDE_LANES ? end - at : WIDE_LANES;
         if (f->lit.on)
             add_octaves(f, b, at, n,

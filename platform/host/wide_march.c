@@ -127,9 +127,8 @@ struct march_kernel {
  * on whether light is uniform: of each two kernels, the step of the second is
  * that of frames with lighting instead. What it reads are the asset's bricks,
  * or copies (1). Of copies, aprons are those of u8, trilinear and `without an
- * apron' (0), octets with (1); halves, nearest and as aprons, serve u8r and u4r,
- * clamped or not:
- * max_density is then above all densities. */
+ * apron' (0), octets with (1); halves, nearest and as aprons, serve u8r and
+ * u4r, clamped or not: max_density is then above all densities. */
 #define NAME(what, format, apron, tri, uni, clamp, copied) \
     what##_##format##_##apron##tri##uni##clamp##copied
 #define KERNEL(format, apron, tri, uni, clamp, copied) \
@@ -337,6 +336,7 @@ void WIDE_NAME(const struct wide_copy *copy, const struct brume_frame *frame,
 {
     struct patch b;
     b.copy = copy;
+    b.sums = NULL;
     begin_lit(frame, &b);
     for (unsigned j = 0; j < h; j += PATCH_HEIGHT)
         for (unsigned i = 0; i < w; i += PATCH_WIDTH)
@@ -344,4 +344,36 @@ void WIDE_NAME(const struct wide_copy *copy, const struct brume_frame *frame,
                         w - i < PATCH_WIDTH ? w - i : PATCH_WIDTH,
                         h - j < PATCH_HEIGHT ? h - j : PATCH_HEIGHT,
                         out + j * stride + i, stride);
+}
+
+/// Sums ///
+
+#define PASTED(a, b) a##b
+#define SUMS_OF(name) PASTED(name, _sums)
+
+void SUMS_OF(WIDE_NAME)(const struct wide_copy *copy,
+                        const struct brume_frame *frame, const uint32_t from[3],
+                        uint32_t step, uint32_t n, uint32_t *sums);
+void SUMS_OF(WIDE_NAME)(const struct wide_copy *copy,
+                        const struct brume_frame *frame, const uint32_t from[3],
+                        uint32_t step, uint32_t n, uint32_t *sums)
+{
+    const struct march_kernel *k = kernel_of(frame, copy, 2u);
+    uint32_t got ROOM(QUEUE);
+    struct patch b;
+    b.copy = copy;
+    b.sums = got;
+    for (uint32_t done = 0; done < n; done += b.queue.count) {
+        b.queue.count = n - done < QUEUE ? n - done : QUEUE;
+        for (uint32_t i = 0; i < b.queue.count; i += WIDE_LANES) {
+            lanes_store(b.queue.p[0] + i,
+                        from[0] + (lanes_count() + (done + i)) * step);
+            lanes_store(b.queue.p[1] + i, lanes_of(from[1]));
+            lanes_store(b.queue.p[2] + i, lanes_of(from[2]));
+        }
+        uint32_t count = b.queue.count;
+        k->light(frame, &b, true);
+        memcpy(sums + done, got, count * sizeof *sums);
+        b.queue.count = count;
+    }
 }

@@ -74,6 +74,7 @@ struct patch {
     void (*light)(const struct brume_frame *f, struct patch *b, bool all);
     lanes (*sum_ways)(const struct brume_frame *f, struct patch *b,
                       uint32_t at);
+    uint32_t *sums; /* where uniform light puts them, or NULL: to the rays */
     uint32_t count; /* groups of the wave: numbers of their first rays */
     uint32_t first[LOOKUPS];
     struct lookups lookups;
