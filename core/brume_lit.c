@@ -9,7 +9,7 @@
 #include "brume_ambient.h"
 #include "brume_emission.h"
 #include "brume_fog.h"
-#include "brume_lamps.h"
+#include "brume_lamp_light.h"
 #include "brume_sun.h"
 #include "brume_sun_map.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Copies of a volume for the wide march; wide.h says which, wide_lookup.h
+ * Copies of a volume for the wide march; wide.h says which, wide_copied.h
  * where a voxel is. Only what is not zero is written, so that pages of empty
  * space stay the system's one page of zeros: it is the processor that looks up
  * the cell.

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Lamps in the wide march: core/brume_lamps.h in lanes, for samples of the
+ * Lamps in the wide march: core/brume_lamp_light.h in lanes, for samples of the
  * queue. A lamp is met by all samples of a vector whose clusters have it at
  * once; which those are, and what is in a shadow's way, is found sample by
  * sample by the core's functions. Part of wide_march.c.
@@ -323,7 +323,6 @@ LANES_CALL void light_from_lamps(const struct brume_frame *f, struct patch *b,
                                  uint32_t end)
 {
     const struct brume_lit_lamp *lamps = f->lit.clusters->lamp;
-    (void)add_lamps; /* compilers are to know that it is not forgotten */
     for (uint32_t at = 0; at < end; at += WIDE_LANES) {
         uint32_t n = end - at < WIDE_LANES ? end - at : WIDE_LANES;
         uint32_t bits[BRUME_LAMP_WORDS];
