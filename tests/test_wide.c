@@ -237,6 +237,54 @@ static void check_refusals(const struct test_volumes *volumes)
     }
 }
 
+/// Fog ///
+
+/* Fog around a small volume. */
+static void fog_scene(struct brume_scene *s, const struct brume_volume *v,
+                      const struct brume_lighting *light, uint16_t side)
+{
+    brume_scene_default(s, v);
+    s->lighting = light;
+    s->width = s->height = side;
+    s->light = BRUME_LOG;
+    s->light_samples = 16;
+    s->noise = BRUME_NOISE_WHITE;
+    s->jitter = BRUME_JITTER_LIGHT;
+    for (int i = 0; i < 3; i++) /* along an axis */
+        s->sun[i] = i == 0 ? 1 : 0;
+}
+
+static void check_fog_scene(const struct brume_scene *s,
+                            const struct brume_volume *v, const char *what)
+{
+    const unsigned whole[4] = {0, 0, s->width, s->height};
+    struct brume_frame frame;
+    if (brume_begin_frame(&frame, v, s) != BRUME_OK)
+        abort();
+    for (int k = 0; k < kernel_count; k++)
+        tap_check(same(kernels[k], NULL, &frame, whole, 999, 999), "%s: %s",
+                  wide_name(kernels[k]), what);
+}
+
+/* Light samples so far away that they do not fit a word: seen from outside of
+ * the pool, one that was taken all the same could come to lie in it. And rays
+ * with more samples outside than are found by adding up. */
+static void check_fog(const struct test_volumes *volumes)
+{
+    static const struct brume_fog k_fog = {
+        .density = 1u << 20, .falloff = 100u << 16, .far = 3000u << 16};
+    static const struct brume_lighting k_light = {
+        .sun_colour = {0x10000, 0x10000, 0x10000}, .fog = &k_fog};
+    const struct brume_volume *v = &volumes->item[0].volume;
+    struct brume_scene s;
+    fog_scene(&s, v, &k_light, 64);
+    s.light_step = BRUME_MAX_STEP;
+    check_fog_scene(&s, v, "fog, and light samples beyond the word");
+    fog_scene(&s, v, &k_light, 9);
+    s.step = 0x4000;
+    check_fog_scene(&s, v, "fog, and rays of 12000 samples");
+}
+
 /// Cache ///
 
 /* The frame whose light goes into a cache. */
@@ -538,6 +586,7 @@ int main(int argc, char **argv)
     check_rectangles(&volumes);
     check_refusals(&volumes);
     check_few();
+    check_fog(&volumes);
     check_caches(&volumes);
     check_random(&volumes);
     check_scenes(&volumes);

@@ -259,8 +259,10 @@ LANES_INLINE lanes_mask lead_away(const struct brume_frame *f, const lanes p[3],
     return away;
 }
 
-/* Whose way to the sun enters the pool: way_to_pool, for samples outside. */
-static lanes_mask ways_to_pool(const struct brume_frame *f, const lanes p[3])
+/* Whose way to the sun enters the pool, and where: way_to_pool, for samples
+ * outside. */
+static lanes_mask ways_to_pool(const struct brume_frame *f, const lanes p[3],
+                               lanes *enter)
 {
     lanes t_in = lanes_of(0), t_out = lanes_of(0xffffffffu), sun[3];
     for (int i = 0; i < 3; i++)
@@ -278,9 +280,45 @@ static lanes_mask ways_to_pool(const struct brume_frame *f, const lanes p[3])
         in = lanes_where(high, times_lanes(in, f->lit.fog.pace[i]));
         t_in = lanes_max(t_in, in);
     }
+    *enter = t_in;
     lanes_mask late =
         mask_and(mask_less(t_out, t_in), mask_less(lanes_of(15), t_in - t_out));
     return mask_less_those(mask_first(WIDE_LANES), mask_or(late, away));
+}
+
+/* Of `wanted` samples from number `at` of the queue on those that have uniform
+ * light samples in the pool, and how many are before these: 0 of a sample
+ * inside; of one outside as in sum_uniform_outside. */
+static lanes_mask uniform_ways(const struct brume_frame *f,
+                               const struct patch *b, uint32_t at,
+                               lanes_mask wanted, lanes *before)
+{
+    const lanes samples = lanes_of(f->light.samples);
+    lanes_mask outside = mask_and(queued_outside(f, b, at), wanted);
+    lanes p[3], t_in, n;
+    *before = lanes_of(0);
+    if (!mask_any(outside))
+        return wanted;
+    for (int i = 0; i < 3; i++)
+        p[i] = lanes_load(b->queue.p[i] + at);
+    lanes_mask on = mask_and(outside, ways_to_pool(f, p, &t_in));
+    lanes_mask found = mask_less_those(wanted, outside);
+    n = times_lanes(t_in, f->lit.fog.per_light_step);
+    n -= lanes_min(n, lanes_of(2));
+    for (int i = 0; i < 3; i++)
+        p[i] +=
+            (uint32_t)f->light.first[i] + n * (uint32_t)f->light_line.move[i];
+    for (uint32_t tries = 0; tries < 5 && mask_any(on); tries++) {
+        on = mask_and(on, mask_less(n, samples));
+        lanes_mask inside = mask_and(on, inside_lanes(f, p[0], p[1], p[2]));
+        found = mask_or(found, inside);
+        *before = lanes_select(inside, n, *before);
+        on = mask_less_those(on, inside);
+        n += 1u;
+        for (int i = 0; i < 3; i++)
+            p[i] += (uint32_t)f->light_line.move[i];
+    }
+    return found;
 }
 
 /* The sums of n samples from number `at` of the queue on; those outside of the
@@ -290,14 +328,14 @@ static lanes sums_outside(const struct brume_frame *f, const struct patch *b,
 {
     uint32_t sums[WIDE_LANES] __attribute__((aligned(64))), moved[3] = {0};
     lanes_mask outside = mask_and(queued_outside(f, b, at), mask_first(n));
-    lanes p[3];
+    lanes p[3], t_in;
     struct kernel k = KERNEL_OF(BRUME_U8R, 0, true, false, false);
     k.moved = moved;
     if (!mask_any(outside))
         return sum;
     for (int i = 0; i < 3; i++)
         p[i] = lanes_load(b->queue.p[i] + at);
-    unsigned enter = mask_bits(mask_and(outside, ways_to_pool(f, p)));
+    unsigned enter = mask_bits(mask_and(outside, ways_to_pool(f, p, &t_in)));
     lanes_spill(sums, lanes_unless(outside, sum));
     for (uint32_t i = 0; i < n; i++) {
         uint32_t from[3];

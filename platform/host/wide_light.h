@@ -122,12 +122,15 @@ LANES_INLINE void fill_light_wave(const struct brume_frame *f,
     for (; *next < end && w->count < LOOKUPS / AHEAD; *next += WIDE_LANES) {
         uint32_t g = w->count++, at = *next;
         lanes_mask valid = mask_less(lanes_count(), lanes_of(end - at));
-        valid = mask_less_those(valid, queued_outside(f, b, at));
+        lanes before = lanes_of(0);
+        if (f->lit.fog.on)
+            valid = uniform_ways(f, b, at, valid, &before);
         w->first[g] = at;
         for (int i = 0; i < 3; i++)
-            lanes_store(w->p[i][g],
-                        lanes_load(q->p[i] + at) + (uint32_t)f->light.first[i]);
-        lanes_store(w->left[g], lanes_where(valid, lanes_of(f->light.samples)));
+            lanes_store(w->p[i][g], lanes_load(q->p[i] + at) +
+                                        (uint32_t)f->light.first[i] +
+                                        before * w->move[i]);
+        lanes_store(w->left[g], lanes_where(valid, f->light.samples - before));
         lanes_store(w->sum[g], lanes_of(0));
     }
 }
@@ -210,8 +213,7 @@ LANES_INLINE void light_uniform(const struct brume_frame *f,
     for (uint32_t at = 0; b->sums == NULL && at < end; at += WIDE_LANES) {
         uint32_t n = end - at < WIDE_LANES ? end - at : WIDE_LANES;
         if (f->lit.on)
-            add_octaves(f, b, at, n,
-                        sums_outside(f, b, at, n, lanes_load(sums + at)));
+            add_octaves(f, b, at, n, lanes_load(sums + at));
         else
             add_light(f, b, at, n, lanes_load(sums + at));
     }

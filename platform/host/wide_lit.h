@@ -99,12 +99,12 @@ LANES_INLINE void leave_out_ways(const struct brume_frame *f, struct patch *b,
 {
     struct ways *w = &b->lit.ways;
     lanes_mask outside = mask_and(queued_outside(f, b, at), w->wanted);
-    lanes p[3];
+    lanes p[3], t_in;
     if (!mask_any(outside))
         return;
     for (int i = 0; i < 3; i++)
         p[i] = lanes_load(b->queue.p[i] + at);
-    w->outside = mask_and(outside, ways_to_pool(f, p));
+    w->outside = mask_and(outside, ways_to_pool(f, p, &t_in));
     w->wanted = mask_or(mask_less_those(w->wanted, outside), w->outside);
 }
 
