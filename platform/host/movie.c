@@ -112,8 +112,7 @@ static int add_to_film(struct movie *movie, const struct image *image,
                      ? apng_frame(&movie->apng, &movie->format, movie->pool,
                                   image, &file)
                      : y4m_frame(movie->pool, image, &file);
-    if (movie->profile)
-        movie->profile->busy[PASS_ENCODE] += profile_process() - now;
+    profile_add_process(movie->profile, PASS_ENCODE, now);
     return put(movie, &file, status, err, err_size);
 }
 
@@ -124,8 +123,7 @@ static int add_picture(struct movie *movie, const char *path,
     double now = profile_process();
     int status = image_encode(movie->format.picture, image, movie->pool, &file,
                               err, err_size);
-    if (movie->profile)
-        movie->profile->busy[PASS_ENCODE] += profile_process() - now;
+    profile_add_process(movie->profile, PASS_ENCODE, now);
     now = profile_now();
     if (status == 0)
         status = image_put(path, &file, err, err_size);

@@ -30,25 +30,24 @@ double profile_clock(void)
     return seconds(CLOCK_MONOTONIC);
 }
 
+static double add_until(struct profile *p, enum pass pass, double from,
+                        double now)
+{
+    p->busy[pass] += now - from;
+    return now;
+}
+
 double profile_add(struct profile *p, enum pass pass, double from)
 {
-    double now;
     if (p == NULL)
         return 0;
-    now = profile_now();
-    p->busy[pass] += now - from;
     p->reads[pass]++;
-    return now;
+    return add_until(p, pass, from, profile_now());
 }
 
 double profile_add_process(struct profile *p, enum pass pass, double from)
 {
-    double now;
-    if (p == NULL)
-        return 0;
-    now = profile_process();
-    p->busy[pass] += now - from;
-    return now;
+    return p != NULL ? add_until(p, pass, from, profile_process()) : 0;
 }
 
 void profile_sum(struct profile *to, const struct profile *from)
