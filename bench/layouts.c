@@ -5,6 +5,7 @@
  */
 #include "layouts.h"
 
+#include "layouts_octets.h"
 #include "wide_lookup.h"
 
 struct batch {
@@ -209,15 +210,14 @@ LANES_INLINE lanes run(const struct layouts *l, enum layout kind,
     return hash;
 }
 
-/* The kernel's own lookup; of copies, that of octets. */
+/* The kernel's own lookup. */
 LANES_INLINE lanes run_kernel(const struct layouts *l, bool copied)
 {
     const struct wide_copy *copy = copied ? l->copy : NULL;
     if (copied && copy == NULL)
         __builtin_unreachable(); /* as the kernel knows its copies */
 
-    const struct kernel k =
-        KERNEL_OF(BRUME_U8, copied ? 1u : 0u, true, false, false);
+    const struct kernel k = KERNEL_OF(BRUME_U8, 0, true, false, false);
     const struct source s = source_of(l->frame, copy, false, k);
     struct lookups batch;
     lanes hash = lanes_of(0);
@@ -261,7 +261,7 @@ static lanes run_asset(const struct layouts *l)
     return run_kernel(l, false);
 }
 
-static lanes run_octet_pages(const struct layouts *l)
+static lanes run_copy(const struct layouts *l)
 {
     return run_kernel(l, true);
 }
@@ -273,7 +273,7 @@ uint32_t LAYOUTS_RUN(const struct layouts *l, int kind)
         run_bricks_16,     run_apron_32,       run_apron_16,
         run_quads_32,      run_quads_16,       run_octets_32,
         run_octets_16,     run_apron_pages_32, run_apron_pages_16,
-        run_quad_pages_32, run_quad_pages_16,  run_octet_pages};
+        run_quad_pages_32, run_quad_pages_16,  run_copy};
     lanes hash = k_run[kind](l);
     uint32_t sum = 0;
     for (unsigned i = 0; i < WIDE_LANES; i++)

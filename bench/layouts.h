@@ -24,7 +24,7 @@ enum layout {
     LAYOUT_OCTETS, /* of 2x2x2 voxels: 8x8x8 */
     LAYOUT_APRON_PAGES, /* 9^3 voxels a cell, and no words of cells */
     LAYOUT_QUAD_PAGES,  /* 8^3 quads a cell, the same */
-    LAYOUT_OCTET_PAGES  /* the kernel's own lookup, from its copy */
+    LAYOUT_COPY         /* the kernel's own lookup, from its copy */
 };
 #define LAYOUTS 9
 

@@ -18,7 +18,7 @@
 
 const struct layout_kind layout_kinds[LAYOUT_KINDS] = {
     {"positions", "", LAYOUT_NONE, PRODUCTS_NONE},
-    {"asset", "32", LAYOUT_ASSET, PRODUCTS_32},
+    {"asset", "16", LAYOUT_ASSET, PRODUCTS_16},
     {"bricks", "32", LAYOUT_BRICKS, PRODUCTS_32},
     {"bricks", "16", LAYOUT_BRICKS, PRODUCTS_16},
     {"apron", "32", LAYOUT_APRON, PRODUCTS_32},
@@ -31,7 +31,7 @@ const struct layout_kind layout_kinds[LAYOUT_KINDS] = {
     {"apron_pages", "16", LAYOUT_APRON_PAGES, PRODUCTS_16},
     {"quad_pages", "32", LAYOUT_QUAD_PAGES, PRODUCTS_32},
     {"quad_pages", "16", LAYOUT_QUAD_PAGES, PRODUCTS_16},
-    {"octet_pages", "16", LAYOUT_OCTET_PAGES, PRODUCTS_OCTETS}};
+    {"copy", "16", LAYOUT_COPY, PRODUCTS_16}};
 
 struct width {
     enum wide_kernel kernel;
@@ -179,9 +179,8 @@ static int prepare(struct job *job, const char *path,
     job->layouts.copy = &job->copy;
     job->bricks = v->bricks;
     wide_copy_init(&job->copy, v, WIDE_COPY_MOST);
-    job->copy.octets_most = WIDE_COPY_MOST;
     wide_copy_prepare(&job->copy, &job->frame, NULL);
-    if (job->copy.octets == NULL || record(job) != 0 ||
+    if (job->copy.aprons == NULL || record(job) != 0 ||
         !layouts_make(&job->layouts, job->bytes)) {
         fputs("brume-layouts: not enough memory\n", stderr);
         return -1;

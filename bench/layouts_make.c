@@ -143,8 +143,7 @@ bool layouts_make(struct layouts *l, size_t bytes[LAYOUTS])
         bytes[layout] =
             m.bricks[layout] * brick_bytes(layout) + (pages ? 0 : 4 * m.cells);
     }
-    /* A page of octets is a brick of them. */
-    bytes[LAYOUT_OCTET_PAGES] = m.bricks[LAYOUT_OCTETS] * (size_t)4096;
+    bytes[LAYOUT_COPY] = bytes[LAYOUT_APRON_PAGES];
     bytes[LAYOUT_ASSET] = v->size;
     if (good)
         visit(&m, v, true);

@@ -48,35 +48,26 @@ int wide_march_rect(enum wide_kernel kernel, const struct brume_frame *frame,
  *
  *   bytes    1 byte a voxel, pages of 16^3    nearest, u8
  *   halves   2 bytes, pages of 16^3           nearest, u8r and u4r
- *   half     2 bytes, 9^3 a cell              where a trilinear lookup needs
+ *   aprons   1 byte, 9^3 a cell               trilinear
+ *   half     2 bytes, 9^3 a cell              trilinear, where a lookup needs
  *   aprons                                    ranges of several bricks, or a
  *                                             clamp
- *   octets   8 bytes, pages of 8^3            trilinear: a voxel and its seven
- *                                             neighbours above
- *   aprons   1 byte, 9^3 a cell               trilinear, u8 of which octets
- *                                             would take more than octets_most
  */
-#define WIDE_COPIES 6
+#define WIDE_COPIES 5
 #define WIDE_APRON 729u /* voxels of a cell's */
 struct wide_copy {
     const struct brume_volume *volume;
     size_t most;        /* bytes of address space that may still be taken */
-    size_t octets_most; /* bytes of memory that octets of u8 may take */
-    size_t bytes_size, halves_size, aprons_size, half_aprons_size, octets_size;
+    size_t bytes_size, halves_size, aprons_size, half_aprons_size;
     const uint8_t *bytes, *aprons;
     const uint16_t *halves, *half_aprons;
-    const uint64_t *octets;
     const uint32_t *ranges; /* of the brick of each cell, else 0 */
     void *memory[WIDE_COPIES];
 };
 
-/* Address space that copies may take: of all but the largest clouds they do;
- * from 6 million cells on there is none. */
+/* Address space that copies may take: that of one lookup is enough for 1.4
+ * million cells (half aprons) to 4 million (bytes). */
 #define WIDE_COPY_MOST ((size_t)1 << 31)
-
-/* Octets take fewer instructions, aprons an eighth of the bytes: where no cache
- * holds the octets, aprons are faster, and far sooner made. */
-#define WIDE_OCTETS_MOST ((size_t)1 << 26)
 
 /* No copies yet; `most` bytes of them, 0 for none. */
 void wide_copy_init(struct wide_copy *copy, const struct brume_volume *volume,

@@ -8,31 +8,34 @@
 
 #include "wide_bricks.h"
 
+/* In the word of a cell: the cube has voxels of other cells. */
+#define SEVERAL_BRICKS 0x80000000u
+
 /* What a lookup by copies reads, taken out of the loops: stores to lookups
  * might change it for all that the compiler knows. */
 struct copied {
     const uint8_t *bytes, *aprons;
     const uint16_t *halves, *half_aprons;
-    const uint64_t *octets;
     const uint32_t *ranges;
     lanes row, plane, end; /* elements from page to page; of the zero one */
     lanes max_density;
 };
 
-/* What a kernel's lookup reads, or reads first, if it is trilinear. */
+/* Does a trilinear lookup read half aprons, or aprons first? */
 LANES_INLINE bool reads_half_aprons(struct kernel k)
 {
     return k.trilinear && k.clamp;
 }
 
-LANES_INLINE bool reads_aprons(struct kernel k)
+/* Does it need ranges, and for cubes of several bricks half aprons? */
+LANES_INLINE bool needs_ranges(struct kernel k)
 {
-    return k.trilinear && !k.clamp && k.format == BRUME_U8 && k.side == 8;
+    return k.trilinear && !k.clamp && k.format != BRUME_U8;
 }
 
-LANES_INLINE bool reads_octets(struct kernel k)
+LANES_INLINE bool sets_apart(struct kernel k)
 {
-    return k.trilinear && !k.clamp && !reads_aprons(k);
+    return needs_ranges(k) && k.side == 8;
 }
 
 LANES_INLINE struct copied copied_of(const struct brume_frame *f,
@@ -40,25 +43,23 @@ LANES_INLINE struct copied copied_of(const struct brume_frame *f,
 {
     struct copied r;
     const uint16_t *n = f->volume->cell_count;
-    size_t end = reads_octets(k)        ? c->octets_size
-                 : reads_aprons(k)      ? c->aprons_size
-                 : reads_half_aprons(k) ? c->half_aprons_size
+    size_t end = reads_half_aprons(k)   ? c->half_aprons_size
+                 : k.trilinear          ? c->aprons_size
                  : k.format == BRUME_U8 ? c->bytes_size
                                         : c->halves_size;
+    uint32_t page = 4096, across = (n[0] + 1u) / 2u, down = (n[1] + 1u) / 2u;
+    if (k.trilinear) { /* numbers of cells */
+        page = 1;
+        across = n[0];
+        down = n[1];
+    }
     r.bytes = c->bytes;
     r.halves = c->halves;
     r.aprons = c->aprons;
     r.half_aprons = c->half_aprons;
-    r.octets = c->octets;
     r.ranges = c->ranges;
     r.max_density = lanes_of(f->max_density);
     r.end = lanes_of((uint32_t)end);
-    uint32_t page = 4096, across = (n[0] + 1u) / 2u, down = (n[1] + 1u) / 2u;
-    if (k.trilinear) {
-        page = reads_octets(k) ? 512u : WIDE_APRON;
-        across = n[0];
-        down = n[1];
-    }
     r.row = lanes_of(across * page);
     r.plane = lanes_of(across * down * page);
     return r;
@@ -80,29 +81,36 @@ LANES_INLINE lanes z_in_pages(lanes z, lanes plane)
     return (z >> 8 & 3840u) + (z >> 20) * plane;
 }
 
-/* Octets in pages of 8^3, or aprons, cell by cell. */
-LANES_INLINE lanes number_in_cells(lanes x, lanes y, lanes z,
-                                   const struct copied *c, struct kernel k)
+/* Cubes of eight voxels in aprons; of those with ranges the cell, too, and
+ * whether the cube is of several bricks. */
+LANES_INLINE void want_cube(struct lookups *l, uint32_t g,
+                            const struct copied *c, lanes x, lanes y, lanes z,
+                            lanes_mask wanted, struct kernel k)
 {
-    lanes cell = (z >> 19) * c->plane + (y >> 19) * c->row;
-    if (!reads_octets(k))
-        return cell + (x >> 19) * WIDE_APRON + (x >> 16 & 7u) +
-               (y >> 16 & 7u) * 9u + (z >> 16 & 7u) * 81u;
-    lanes voxel = (x >> 16 & 7u) | (y >> 13 & 56u) | (z >> 10 & 448u);
-    return cell + ((x >> 10 & 0xfffffe00u) | voxel);
+    lanes cell = (z >> 19) * c->plane + (y >> 19) * c->row + (x >> 19);
+    lanes at = cell * WIDE_APRON + (x >> 16 & 7u) + (y >> 16 & 7u) * 9u +
+               (z >> 16 & 7u) * 81u;
+    lanes_store(l->at[g], lanes_select(wanted, at, c->end));
+    lanes_store(l->weight[g], weights_of(x, y, z));
+    if (!needs_ranges(k))
+        return;
+    cell = lanes_where(wanted, cell);
+    if (sets_apart(k)) {
+        lanes_mask face = mask_and(wanted, on_high_faces(x, y, z));
+        cell |= lanes_where(face, lanes_of(SEVERAL_BRICKS));
+    }
+    lanes_store(l->cell[g], cell);
 }
 
 LANES_INLINE void want_copied(struct lookups *l, uint32_t g,
                               const struct copied *c, lanes x, lanes y, lanes z,
                               lanes_mask wanted, struct kernel k)
 {
-    lanes at;
     if (k.trilinear) {
-        at = number_in_cells(x, y, z, c, k);
-        lanes_store(l->weight[g], weights_of(x, y, z));
-    } else {
-        at = x_in_pages(x) + y_in_pages(y, c->row) + z_in_pages(z, c->plane);
+        want_cube(l, g, c, x, y, z, wanted, k);
+        return;
     }
+    lanes at = x_in_pages(x) + y_in_pages(y, c->row) + z_in_pages(z, c->plane);
     lanes_store(l->at[g], lanes_select(wanted, at, c->end));
 }
 
@@ -127,26 +135,20 @@ LANES_INLINE lanes mix_halves(const struct copied *c, const uint32_t *at,
     return (mix_lanes(plane[0], plane[1], wz) + 0x8000u) >> 16;
 }
 
-/* From octets; but where these need the ranges of several bricks, from half
+/* From aprons; but where these need the ranges of several bricks, from half
  * aprons: apart. */
 LANES_INLINE lanes trilinear_copied(struct lookups *l, uint32_t g,
                                     const struct copied *c, struct kernel k)
 {
-    lanes at = lanes_load(l->at[g]), w = lanes_load(l->weight[g]);
-    lanes d = mean_of_octets(c->octets, l->at[g], w);
-    if (k.format == BRUME_U8)
+    lanes w = lanes_load(l->weight[g]);
+    lanes d = mean_of_cubes(c->aprons, 9, l->at[g], w);
+    if (!needs_ranges(k))
         return d;
-    lanes cell = at >> 9;
-    d = density_of(gather_words(c->ranges, cell), d, 8, k);
-    if (k.side == 9)
-        return d;
-    lanes x = at & 7u, y = at >> 3 & 7u, z = at >> 6 & 7u, last = lanes_of(7);
-    lanes_mask face = mask_or(
-        mask_equal(x, last), mask_or(mask_equal(y, last), mask_equal(z, last)));
-    face = mask_and(face, mask_less(at, c->end));
-    if (mask_any(face))
-        set_apart(l, g, cell * WIDE_APRON + x + y * 9u + z * 81u, w, w, face);
-    return d;
+    lanes cell = lanes_load(l->cell[g]), at = lanes_load(l->at[g]);
+    lanes range = gather_words(c->ranges, cell & ~SEVERAL_BRICKS);
+    if (sets_apart(k) && mask_any(mask_high(cell)))
+        set_apart(l, g, at, w, w, mask_high(cell));
+    return lanes_where(mask_less(at, c->end), density_of(range, d, 8, k));
 }
 
 LANES_INLINE void copied_apart(struct lookups *l, const struct copied *c,
@@ -168,8 +170,6 @@ LANES_INLINE lanes density_copied(struct lookups *l, uint32_t g,
     lanes d;
     if (reads_half_aprons(k))
         return mix_halves(c, l->at[g], lanes_load(l->weight[g]), k);
-    if (reads_aprons(k))
-        return mean_of_cubes(c->aprons, 9, l->at[g], lanes_load(l->weight[g]));
     if (k.trilinear)
         return trilinear_copied(l, g, c, k);
     if (k.format == BRUME_U8) {

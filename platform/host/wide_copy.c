@@ -40,7 +40,6 @@ void wide_copy_init(struct wide_copy *copy, const struct brume_volume *volume,
     memset(copy, 0, sizeof *copy);
     copy->volume = volume;
     copy->most = most;
-    copy->octets_most = WIDE_OCTETS_MOST;
 }
 
 void wide_copy_free(struct wide_copy *copy)
@@ -208,37 +207,41 @@ static bool part_of(struct part *part, const struct brume_volume *v,
     return true;
 }
 
-/* Zeros are not written. */
-static void copy_part(const struct part *part, const uint8_t *from,
-                      uint32_t side, uint8_t *to)
+/* Of a cell without a brick, zeros are not written. */
+static void copy_part(const struct part *part, const struct brume_volume *v,
+                      uint32_t brick, uint8_t *to)
 {
+    uint32_t side = v->side;
+    bool own = part->size[0] * part->size[1] * part->size[2] >= 512;
     to += part->at;
     for (uint32_t z = 0; z < part->size[2]; z++)
         for (uint32_t y = 0; y < part->size[1]; y++)
             for (uint32_t x = 0; x < part->size[0]; x++) {
-                uint8_t code = from[x + side * (y + side * z)];
-                if (code != 0)
+                uint8_t code =
+                    (uint8_t)code_of(v, brick, x + side * (y + side * z));
+                if (own || code != 0)
                     to[x + 9 * y + 81 * z] = code;
             }
 }
 
-/* Where bricks have an apron it is taken as it is. */
+/* Where bricks have an apron it is taken as it is. Codes of u8 are the same in
+ * all bricks; of others, a cell gets those of its own brick alone. */
 static void copy_aprons(struct wide_copy *c, const uint32_t cell[3],
                         uint32_t brick, void *to)
 {
     const struct brume_volume *v = c->volume;
-    const uint8_t *from = v->pool + (size_t)brick * v->brick_bytes;
+    bool alone = v->side == 9 || v->format != BRUME_U8;
     struct part part;
-    for (uint32_t n = 0; n < (v->side == 9 ? 1u : 8u); n++)
+    for (uint32_t n = 0; n < (alone ? 1u : 8u); n++)
         if (part_of(&part, v, cell, n, v->side))
-            copy_part(&part, from, v->side, to);
+            copy_part(&part, v, brick, to);
 }
 
 static void make_aprons(struct wide_copy *c, struct pool *pool)
 {
     uint64_t size = cells_of(c->volume) * WIDE_APRON;
     /* The zero one: as long as a lookup reaches. */
-    uint8_t *to = reserve(c, 4, size + WIDE_APRON, 1);
+    uint8_t *to = reserve(c, 2, size + WIDE_APRON, 1);
     if (to == NULL)
         return;
     for_bricks(c, pool, copy_aprons, to);
@@ -277,7 +280,7 @@ static void copy_half_aprons(struct wide_copy *c, const uint32_t cell[3],
 static void make_half_aprons(struct wide_copy *c, struct pool *pool)
 {
     uint64_t n = cells_of(c->volume) * WIDE_APRON;
-    uint16_t *to = reserve(c, 5, 2 * (n + WIDE_APRON), 2);
+    uint16_t *to = reserve(c, 4, 2 * (n + WIDE_APRON), 2);
     if (to == NULL)
         return;
     for_bricks(c, pool, copy_half_aprons, to);
@@ -285,115 +288,7 @@ static void make_half_aprons(struct wide_copy *c, struct pool *pool)
     c->half_aprons_size = (size_t)n;
 }
 
-/// Octets ///
-
-/* Two voxels of a row. */
-static uint64_t two_of(const uint8_t *from)
-{
-    return (uint64_t)from[0] | (uint64_t)from[1] << 8;
-}
-
-/* The octets of a cell's voxels below `end` on each axis, from codes whose rows
- * and slices are that of a brick of that side. */
-static void put_octets(uint64_t *page, const uint8_t *codes, uint32_t side,
-                       uint32_t end)
-{
-    const uint32_t slice = side * side;
-    for (uint32_t z = 0; z < end; z++)
-        for (uint32_t y = 0; y < end; y++) {
-            const uint8_t *low = codes + z * slice + y * side;
-            uint64_t *to = page + (z << 6 | y << 3);
-            for (uint32_t x = 0; x < end; x++, low++)
-                to[x] = two_of(low) | two_of(low + side) << 16 |
-                        two_of(low + slice) << 32 |
-                        two_of(low + slice + side) << 48;
-        }
-}
-
-static uint64_t *octets_of(const struct brume_volume *v, void *to,
-                           const uint32_t cell[3])
-{
-    size_t number =
-        ((size_t)cell[2] * v->cell_count[1] + cell[1]) * v->cell_count[0] +
-        cell[0];
-    return (uint64_t *)to + (number << 9);
-}
-
-/* Those of one brick: of its apron, or of voxels that have all neighbours in
- * it. */
-static void copy_octets_inside(struct wide_copy *c, const uint32_t cell[3],
-                               uint32_t brick, void *to)
-{
-    const struct brume_volume *v = c->volume;
-    uint32_t side = v->side;
-    uint8_t codes[729];
-    for (uint32_t i = 0; i < side * side * side; i++)
-        codes[i] = (uint8_t)code_of(v, brick, i);
-    put_octets(octets_of(v, to, cell), codes, side, side - 1u);
-}
-
-/* A cell's codes with an apron, of the bricks above it; false when there are
- * none. */
-static bool apron_of(const struct brume_volume *v, const uint32_t cell[3],
-                     uint8_t codes[WIDE_APRON])
-{
-    bool any = false;
-    memset(codes, 0, WIDE_APRON);
-    for (uint32_t n = 0; n < 8; n++) {
-        uint64_t number = 0;
-        uint32_t end[3];
-        size_t place = 0;
-        bool inside = true;
-        for (int i = 2; i >= 0; i--) {
-            uint32_t above = n >> i & 1u;
-            inside = inside && cell[i] + above < v->cell_count[i];
-            number = number * v->cell_count[i] + cell[i] + above;
-            place = place * 9 + 8 * above;
-            end[i] = above ? 1 : 8;
-        }
-        if (!inside || brick_of(v, number) < 0)
-            continue;
-        const uint8_t *from = v->pool + (size_t)brick_of(v, number) * 512;
-        for (uint32_t z = 0; z < end[2]; z++)
-            for (uint32_t y = 0; y < end[1]; y++)
-                memcpy(codes + place + 81 * z + 9 * y, from + 64 * z + 8 * y,
-                       end[0]);
-        any = true;
-    }
-    return any;
-}
-
-/* u8 without an apron: a cell's octets have bytes of its neighbours' bricks,
- * and so may those of a cell without one. */
-static void do_octets(void *arg, unsigned task, unsigned worker)
-{
-    const struct brick_job *job = arg;
-    const struct brume_volume *v = job->copy->volume;
-    uint32_t cell[3] = {0, 0, task};
-    uint8_t codes[WIDE_APRON];
-    (void)worker;
-    for (; cell[1] < v->cell_count[1]; cell[1]++)
-        for (cell[0] = 0; cell[0] < v->cell_count[0]; cell[0]++)
-            if (apron_of(v, cell, codes))
-                put_octets(octets_of(v, job->to, cell), codes, 9, 8);
-}
-
-static void make_octets(struct wide_copy *c, struct pool *pool)
-{
-    const struct brume_volume *v = c->volume;
-    uint64_t n = cells_of(v) << 9;
-    bool inside = v->side == 9 || v->format != BRUME_U8;
-    uint64_t *to = reserve(c, 2, 8 * n, 8);
-    if (to == NULL)
-        return;
-    struct brick_job job = {c, NULL, to, 0};
-    if (inside)
-        for_bricks(c, pool, copy_octets_inside, to);
-    else
-        pool_run(pool, do_octets, &job, v->cell_count[2]);
-    c->octets = to;
-    c->octets_size = (size_t)n;
-}
+/// Ranges ///
 
 static void make_ranges(struct wide_copy *c)
 {
@@ -421,10 +316,7 @@ void wide_copy_prepare(struct wide_copy *copy, const struct brume_frame *frame,
         make_halves(c, pool);
     if (trilinear && (clamp || (!u8 && v->side == 8)) && c->half_aprons == NULL)
         make_half_aprons(c, pool);
-    bool few = !u8 || (size_t)v->bricks * PAGE <= c->octets_most;
-    if (trilinear && !clamp && few && c->octets == NULL)
-        make_octets(c, pool);
-    if (trilinear && !clamp && u8 && c->octets == NULL && c->aprons == NULL)
+    if (trilinear && !clamp && c->aprons == NULL)
         make_aprons(c, pool);
     if (trilinear && !clamp && !u8 && c->ranges == NULL)
         make_ranges(c);

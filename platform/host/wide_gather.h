@@ -170,123 +170,34 @@ LANES_INLINE lanes lanes_of_table16(const uint16_t *table, lanes i)
 #endif
 }
 
-/// Octets ///
+/// Cubes ///
 
 /*
- * Eight bytes each, of the corners of a cube: x is bit 0 of a byte's number, y
- * bit 1, z bit 2. mean_of_octets is their mean by weights wx, wy, wz / 256 in
- * bytes 0, 1, 2 of w: the exact sum of the eight products, of whose 24
- * fraction bits the low 16 are rounded off.
+ * Bytes of side^3 voxels, of bricks or with an apron: rows are `side` further,
+ * slices its square. mean_of_cubes is the mean of the cubes of eight voxels
+ * from number i on by weights wx, wy, wz / 256 in bytes 0, 1, 2 of w: the exact
+ * sum of the eight products, of whose 24 fraction bits the low 16 are rounded
+ * off.
  *
- * In vectors, bytes less 128 are mixed along x by 8-bit products in pairs,
+ * In vectors they are gathered as two words of four bytes, the lower and the
+ * upper plane, x first. Bytes less 128 are mixed along x by 8-bit products in
+ * pairs,
  *     a (255 - w) + b w + a,  which fits 16 bits,
  * then along y by 16-bit products in pairs, then along z. What 128 was taken
  * from comes out as 2^31, exactly, for the weights' sum is 2^24.
  */
 #if defined(__AVX512F__)
-typedef __m512i octets_t;
-#define OCTETS(name) _mm512_##name
-#define OCTETS_LOGIC(name) _mm512_##name##_si512
-#define OCTETS_SPREAD(x) _mm512_broadcast_i32x4(x)
+typedef __m512i bytes_t;
+#define BYTES(name) _mm512_##name
+#define BYTES_LOGIC(name) _mm512_##name##_si512
+#define BYTES_SPREAD(x) _mm512_broadcast_i32x4(x)
 #elif defined(__AVX2__)
-typedef __m256i octets_t;
-#define OCTETS(name) _mm256_##name
-#define OCTETS_LOGIC(name) _mm256_##name##_si256
-#define OCTETS_SPREAD(x) _mm256_broadcastsi128_si256(x)
+typedef __m256i bytes_t;
+#define BYTES(name) _mm256_##name
+#define BYTES_LOGIC(name) _mm256_##name##_si256
+#define BYTES_SPREAD(x) _mm256_broadcastsi128_si256(x)
 #endif
 
-#if defined(__AVX2__)
-
-/* Sums of products less 2^31, in the low words. w: weights, 64 bits each. */
-LANES_INLINE octets_t mix_octets(octets_t v, octets_t w)
-{
-    const octets_t xs = OCTETS_SPREAD(
-        _mm_set_epi8(8, 8, 8, 8, 8, 8, 8, 8, 0, 0, 0, 0, 0, 0, 0, 0));
-    const octets_t ys = OCTETS_SPREAD(
-        _mm_set_epi8(-1, 9, -1, 9, -1, 9, -1, 9, -1, 1, -1, 1, -1, 1, -1, 1));
-    octets_t wx = OCTETS_LOGIC(xor)(OCTETS(shuffle_epi8)(w, xs),
-                                    OCTETS(set1_epi16)(0xff));
-    octets_t wy = OCTETS_LOGIC(xor)(OCTETS(shuffle_epi8)(w, ys),
-                                    OCTETS(set1_epi32)(0xffff));
-    wy = OCTETS(add_epi16)(wy, OCTETS(set1_epi32)(0x101));
-    v = OCTETS_LOGIC(xor)(v, OCTETS(set1_epi8)(-128));
-    octets_t a = OCTETS(srai_epi16)(OCTETS(slli_epi16)(v, 8), 8);
-    octets_t x = OCTETS(add_epi16)(OCTETS(maddubs_epi16)(wx, v), a);
-    octets_t y = OCTETS(madd_epi16)(x, wy);
-    octets_t rise = OCTETS(sub_epi32)(OCTETS(srli_epi64)(y, 32), y);
-    octets_t z = OCTETS(mul_epu32)(rise, OCTETS(srli_epi64)(w, 16));
-    return OCTETS(add_epi32)(OCTETS(slli_epi32)(y, 8), z);
-}
-
-LANES_INLINE __m128i load_octets(const uint64_t *p, uint32_t low, uint32_t high)
-{
-    return _mm_castps_si128(_mm_loadh_pi(
-        _mm_castsi128_ps(_mm_loadl_epi64((const __m128i *)(p + low))),
-        (const __m64 *)(p + high)));
-}
-
-#endif
-
-LANES_INLINE lanes mean_of_octets(const uint64_t *p, const uint32_t *i, lanes w)
-{
-#if defined(__AVX512F__)
-    octets_t half[2];
-    for (int n = 0; n < 2; n++, i += 8) {
-        __m256i low = _mm256_inserti128_si256(
-            _mm256_castsi128_si256(load_octets(p, i[0], i[1])),
-            load_octets(p, i[2], i[3]), 1);
-        __m256i high = _mm256_inserti128_si256(
-            _mm256_castsi128_si256(load_octets(p, i[4], i[5])),
-            load_octets(p, i[6], i[7]), 1);
-        octets_t v = _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
-        __m256i ws = n ? _mm512_extracti64x4_epi64((__m512i)w, 1)
-                       : _mm512_castsi512_si256((__m512i)w);
-        half[n] = mix_octets(v, _mm512_cvtepu32_epi64(ws));
-    }
-    const __m512i low_words = _mm512_set_epi32(30, 28, 26, 24, 22, 20, 18, 16,
-                                               14, 12, 10, 8, 6, 4, 2, 0);
-    lanes sum = (lanes)_mm512_permutex2var_epi32(half[0], low_words, half[1]);
-    return (sum + 0x80008000u) >> 16;
-#elif defined(__AVX2__)
-    __m256 half[2];
-    for (int n = 0; n < 2; n++, i += 4) {
-        octets_t v = _mm256_inserti128_si256(
-            _mm256_castsi128_si256(load_octets(p, i[0], i[1])),
-            load_octets(p, i[2], i[3]), 1);
-        __m128i ws = n ? _mm256_extracti128_si256((__m256i)w, 1)
-                       : _mm256_castsi256_si128((__m256i)w);
-        half[n] = _mm256_castsi256_ps(mix_octets(v, _mm256_cvtepu32_epi64(ws)));
-    }
-    __m256i both =
-        _mm256_castps_si256(_mm256_shuffle_ps(half[0], half[1], 0x88));
-    lanes sum = (lanes)_mm256_permute4x64_epi64(both, 0xd8);
-    return (sum + 0x80008000u) >> 16;
-#else
-    for (unsigned n = 0; n < WIDE_LANES; n++) {
-        uint32_t sum = 0x8000u;
-        for (uint32_t b = 0; b < 8; b++) {
-            uint32_t product = p[i[n]] >> 8 * b & 255u;
-            for (uint32_t axis = 0; axis < 3; axis++) {
-                uint32_t u = w[n] >> 8 * axis & 255u;
-                product *= b >> axis & 1u ? u : 256u - u;
-            }
-            sum += product;
-        }
-        w[n] = sum >> 16;
-    }
-    return w;
-#endif
-}
-
-/// Cubes ///
-
-/*
- * Bytes of side^3 voxels, of bricks or with an apron: rows are `side` further,
- * slices its square. The mean is that of the same cube of eight, gathered as
- * two vectors of four bytes: of the lower and of the upper plane, x first.
- * Aprons take an eighth of the octets' bytes and a half more than bricks: it is
- * caches that make them the faster ones.
- */
 #if defined(__AVX2__)
 
 LANES_INLINE int two_bytes(const uint8_t *from)
@@ -314,24 +225,24 @@ LANES_INLINE lanes gather_rows(const uint8_t *p, const uint32_t *i,
     return lanes_join(quad);
 }
 
-/* As mix_octets, with both planes in lanes of 32 bits, and rounded. */
+/* Of both planes. */
 LANES_INLINE lanes mean_of_planes(const lanes four[2], lanes w)
 {
-    const octets_t xs = OCTETS_SPREAD(
+    const bytes_t xs = BYTES_SPREAD(
         _mm_set_epi8(12, 12, 12, 12, 8, 8, 8, 8, 4, 4, 4, 4, 0, 0, 0, 0));
-    const octets_t ys = OCTETS_SPREAD(
+    const bytes_t ys = BYTES_SPREAD(
         _mm_set_epi8(-1, 13, -1, 13, -1, 9, -1, 9, -1, 5, -1, 5, -1, 1, -1, 1));
-    octets_t wx = OCTETS_LOGIC(xor)(OCTETS(shuffle_epi8)((octets_t)w, xs),
-                                    OCTETS(set1_epi16)(0xff));
-    octets_t wy = OCTETS_LOGIC(xor)(OCTETS(shuffle_epi8)((octets_t)w, ys),
-                                    OCTETS(set1_epi32)(0xffff));
-    wy = OCTETS(add_epi16)(wy, OCTETS(set1_epi32)(0x101));
+    bytes_t wx = BYTES_LOGIC(xor)(BYTES(shuffle_epi8)((bytes_t)w, xs),
+                                  BYTES(set1_epi16)(0xff));
+    bytes_t wy = BYTES_LOGIC(xor)(BYTES(shuffle_epi8)((bytes_t)w, ys),
+                                  BYTES(set1_epi32)(0xffff));
+    wy = BYTES(add_epi16)(wy, BYTES(set1_epi32)(0x101));
     lanes plane[2];
     for (int n = 0; n < 2; n++) {
-        octets_t v = (octets_t)(four[n] ^ 0x80808080u);
-        octets_t a = OCTETS(srai_epi16)(OCTETS(slli_epi16)(v, 8), 8);
-        octets_t x = OCTETS(add_epi16)(OCTETS(maddubs_epi16)(wx, v), a);
-        plane[n] = (lanes)OCTETS(madd_epi16)(x, wy);
+        bytes_t v = (bytes_t)(four[n] ^ 0x80808080u);
+        bytes_t a = BYTES(srai_epi16)(BYTES(slli_epi16)(v, 8), 8);
+        bytes_t x = BYTES(add_epi16)(BYTES(maddubs_epi16)(wx, v), a);
+        plane[n] = (lanes)BYTES(madd_epi16)(x, wy);
     }
     lanes sum = (plane[0] << 8) + (plane[1] - plane[0]) * (w >> 16);
     return (sum + 0x80008000u) >> 16;

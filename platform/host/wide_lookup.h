@@ -62,7 +62,7 @@ LANES_INLINE void look_up(struct lookups *l, uint32_t n, const struct source *s,
         l->apart_count = 0;
         for (uint32_t g = 0; g < n; g++)
             lanes_store(l->d[g], density_copied(l, g, &s->copied, k));
-        if (reads_octets(k) && k.format != BRUME_U8)
+        if (sets_apart(k))
             copied_apart(l, &s->copied, k);
     } else if (k.trilinear) {
         look_up_trilinear(l, n, s->frame, k);

@@ -126,9 +126,9 @@ struct march_kernel {
 /* A kernel of its own for each lookup and light. How rays move does not depend
  * on whether light is uniform: of each two kernels, the step of the second is
  * that of frames with lighting instead. What it reads are the asset's bricks,
- * or copies (1). Of copies, aprons are those of u8, trilinear and `without an
- * apron' (0), octets with (1); halves, nearest and as aprons, serve u8r and
- * u4r, clamped or not: max_density is then above all densities. */
+ * or copies (1). Of copies, halves and what has ranges are u8r, whatever the
+ * asset is; halves are of kernels that clamp, to something above all densities
+ * where the frame does not; and aprons are those of bricks without one. */
 #define NAME(what, format, apron, tri, uni, clamp, copied) \
     what##_##format##_##apron##tri##uni##clamp##copied
 #define KERNEL(format, apron, tri, uni, clamp, copied) \
@@ -167,7 +167,6 @@ struct march_kernel {
     KERNEL(BRUME_U8, 0, 0, uni, 1, 1) \
     KERNEL(BRUME_U8R, 0, 0, uni, 1, 1) \
     KERNEL(BRUME_U8, 0, 1, uni, 0, 1) \
-    KERNEL(BRUME_U8, 1, 1, uni, 0, 1) \
     KERNEL(BRUME_U8R, 0, 1, uni, 0, 1) \
     KERNEL(BRUME_U8R, 1, 1, uni, 0, 1) \
     KERNEL(BRUME_U8R, 0, 1, uni, 1, 1)
@@ -205,10 +204,8 @@ static const struct march_kernel *kernel_of(const struct brume_frame *f,
     if (clamp)
         return c->half_aprons ? copied + (BRUME_U8R << 4) + 5 : direct;
     if (u8)
-        return c->octets   ? copied + (BRUME_U8 << 4) + 12
-               : c->aprons ? copied + (BRUME_U8 << 4) + 4
-                           : direct;
-    if (!c->octets || !c->ranges || (!apron && !c->half_aprons))
+        return c->aprons ? copied + (BRUME_U8 << 4) + 4 : direct;
+    if (!c->aprons || !c->ranges || (!apron && !c->half_aprons))
         return direct;
     return copied + (BRUME_U8R << 4) + (apron ? 12 : 4);
 }

@@ -24,7 +24,6 @@ static int march(const struct brume_frame *frame, unsigned x, unsigned y,
     if (s_asset != frame->volume->asset) {
         wide_copy_free(&s_copy);
         wide_copy_init(&s_copy, frame->volume, WIDE_COPY_MOST);
-        s_copy.octets_most = 0; /* so that aprons serve u8, octets u4r */
         s_asset = frame->volume->asset;
     }
     if (by_copies)
