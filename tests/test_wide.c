@@ -140,6 +140,8 @@ static bool equal_copies(const struct wide_copy *a, const struct wide_copy *b)
             memcmp(a->halves, b->halves, 2 * a->halves_size) == 0) &&
            (a->half_aprons == NULL || memcmp(a->half_aprons, b->half_aprons,
                                              2 * a->half_aprons_size) == 0) &&
+           (a->emission == NULL ||
+            memcmp(a->emission, b->emission, a->aprons_size) == 0) &&
            (a->aprons == NULL ||
             memcmp(a->aprons, b->aprons, a->aprons_size) == 0);
 }
@@ -147,14 +149,18 @@ static bool equal_copies(const struct wide_copy *a, const struct wide_copy *b)
 /* Layers that threads make at the same time do not meet. */
 static void check_threads(const struct test_volumes *volumes)
 {
+    static const uint32_t k_colour[256][3] = {{0}};
+    static const struct brume_lighting k_glow = {
+        .emission_colour = k_colour, .emission_scale = (uint64_t)1 << 32};
     struct pool *pool = pool_new(3);
-    bool good = pool != NULL;
+    bool good = pool != NULL, glows = false;
     for (int i = 0; i < volumes->count; i++) {
         const struct brume_volume *v = &volumes->item[i].volume;
         struct wide_copy one, three;
         struct brume_scene scene;
         struct brume_frame frame;
         brume_scene_default(&scene, v);
+        scene.lighting = v->emission != NULL ? &k_glow : NULL;
         wide_copy_init(&one, v, WIDE_COPY_MOST);
         wide_copy_init(&three, v, WIDE_COPY_MOST);
         for (int filter = 0; filter < 2; filter++) {
@@ -165,11 +171,12 @@ static void check_threads(const struct test_volumes *volumes)
             wide_copy_prepare(&three, &frame, pool);
         }
         good = good && equal_copies(&one, &three);
+        glows = glows || three.emission != NULL;
         wide_copy_free(&one);
         wide_copy_free(&three);
     }
     pool_free(pool);
-    tap_check(good, "copies by three threads are those by one");
+    tap_check(good && glows, "copies by three threads are those by one");
 }
 
 /// Rectangles ///

@@ -49,17 +49,18 @@ int wide_march_rect(enum wide_kernel kernel, const struct brume_frame *frame,
  *   bytes    1 byte a voxel, pages of 16^3    nearest, u8
  *   halves   2 bytes, pages of 16^3           nearest, u8r and u4r
  *   aprons   1 byte, 9^3 a cell               trilinear
+ *   emission the same of the second grid      trilinear, of frames that emit
  *   half     2 bytes, 9^3 a cell              trilinear, where a lookup needs
  *   aprons                                    ranges of several bricks, or a
  *                                             clamp
  */
-#define WIDE_COPIES 5
+#define WIDE_COPIES 6
 #define WIDE_APRON 729u /* voxels of a cell's */
 struct wide_copy {
     const struct brume_volume *volume;
     size_t most;        /* bytes of address space that may still be taken */
     size_t bytes_size, halves_size, aprons_size, half_aprons_size;
-    const uint8_t *bytes, *aprons;
+    const uint8_t *bytes, *aprons, *emission;
     const uint16_t *halves, *half_aprons;
     const uint32_t *ranges; /* of the brick of each cell, else 0 */
     void *memory[WIDE_COPIES];

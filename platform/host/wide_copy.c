@@ -207,21 +207,25 @@ static bool part_of(struct part *part, const struct brume_volume *v,
     return true;
 }
 
-/* Of a cell without a brick, zeros are not written. */
-static void copy_part(const struct part *part, const struct brume_volume *v,
-                      uint32_t brick, uint8_t *to)
+/* Codes of a brick to the first n of the cells that have some of it; zeros not
+ * to others than its own. */
+static void copy_parts(const struct brume_volume *v, const uint32_t cell[3],
+                       const uint8_t *from, uint32_t side, uint32_t n,
+                       uint8_t *aprons)
 {
-    uint32_t side = v->side;
-    bool own = part->size[0] * part->size[1] * part->size[2] >= 512;
-    to += part->at;
-    for (uint32_t z = 0; z < part->size[2]; z++)
-        for (uint32_t y = 0; y < part->size[1]; y++)
-            for (uint32_t x = 0; x < part->size[0]; x++) {
-                uint8_t code =
-                    (uint8_t)code_of(v, brick, x + side * (y + side * z));
-                if (own || code != 0)
-                    to[x + 9 * y + 81 * z] = code;
-            }
+    struct part part;
+    for (uint32_t down = 0; down < n; down++) {
+        if (!part_of(&part, v, cell, down, side))
+            continue;
+        uint8_t *to = aprons + part.at;
+        for (uint32_t z = 0; z < part.size[2]; z++)
+            for (uint32_t y = 0; y < part.size[1]; y++)
+                for (uint32_t x = 0; x < part.size[0]; x++) {
+                    uint8_t code = from[x + side * (y + side * z)];
+                    if (down == 0 || code != 0)
+                        to[x + 9 * y + 81 * z] = code;
+                }
+    }
 }
 
 /* Where bricks have an apron it is taken as it is. Codes of u8 are the same in
@@ -230,23 +234,35 @@ static void copy_aprons(struct wide_copy *c, const uint32_t cell[3],
                         uint32_t brick, void *to)
 {
     const struct brume_volume *v = c->volume;
+    const uint8_t *from = v->pool + (size_t)brick * v->brick_bytes;
     bool alone = v->side == 9 || v->format != BRUME_U8;
-    struct part part;
-    for (uint32_t n = 0; n < (alone ? 1u : 8u); n++)
-        if (part_of(&part, v, cell, n, v->side))
-            copy_part(&part, v, brick, to);
+    uint8_t codes[WIDE_APRON];
+    for (uint32_t i = 0;
+         v->format == BRUME_U4R && i < v->side * v->side * v->side; i++)
+        codes[i] = (uint8_t)code_of(v, brick, i);
+    copy_parts(v, cell, v->format == BRUME_U4R ? codes : from, v->side,
+               alone ? 1 : 8, to);
 }
 
-static void make_aprons(struct wide_copy *c, struct pool *pool)
+static void copy_emission(struct wide_copy *c, const uint32_t cell[3],
+                          uint32_t brick, void *to)
+{
+    copy_parts(c->volume, cell, c->volume->emission + (size_t)brick * 512, 8, 8,
+               to);
+}
+
+/* Aprons as number n of the memories; NULL without room. */
+static uint8_t *make_aprons(struct wide_copy *c, struct pool *pool, int n,
+                            each_brick *act)
 {
     uint64_t size = cells_of(c->volume) * WIDE_APRON;
     /* The zero one: as long as a lookup reaches. */
-    uint8_t *to = reserve(c, 2, size + WIDE_APRON, 1);
+    uint8_t *to = reserve(c, n, size + WIDE_APRON, 1);
     if (to == NULL)
-        return;
-    for_bricks(c, pool, copy_aprons, to);
-    c->aprons = to;
+        return NULL;
+    for_bricks(c, pool, act, to);
     c->aprons_size = (size_t)size;
+    return to;
 }
 
 /// Half aprons ///
@@ -317,7 +333,9 @@ void wide_copy_prepare(struct wide_copy *copy, const struct brume_frame *frame,
     if (trilinear && (clamp || (!u8 && v->side == 8)) && c->half_aprons == NULL)
         make_half_aprons(c, pool);
     if (trilinear && !clamp && c->aprons == NULL)
-        make_aprons(c, pool);
+        c->aprons = make_aprons(c, pool, 2, copy_aprons);
+    if (trilinear && frame->lit.emits && c->emission == NULL)
+        c->emission = make_aprons(c, pool, 5, copy_emission);
     if (trilinear && !clamp && !u8 && c->ranges == NULL)
         make_ranges(c);
 }

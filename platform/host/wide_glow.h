@@ -101,8 +101,8 @@ static lanes emission_anywhere(const struct brume_volume *v, const lanes p[3],
 /* emission_between, where a lookup of density may find something: in bricks,
  * and beside them unless they have an apron, as lookups in these end with the
  * cell. Elsewhere the core does not ask. */
-LANES_INLINE lanes emission_mixes(const struct brume_frame *f, const lanes p[3],
-                                  lanes_mask wanted)
+static lanes emission_mixes(const struct brume_frame *f, const lanes p[3],
+                            lanes_mask wanted)
 {
     const struct brume_volume *v = f->volume;
     uint32_t at_voxel[WIDE_LANES] __attribute__((aligned(64)));
@@ -127,6 +127,24 @@ LANES_INLINE lanes emission_mixes(const struct brume_frame *f, const lanes p[3],
     return m;
 }
 
+/* The same from a copy, which has all that is beside a cell. */
+LANES_INLINE lanes emission_copied(const struct brume_frame *f,
+                                   const struct wide_copy *c, const lanes p[3],
+                                   lanes_mask wanted)
+{
+    uint32_t i[WIDE_LANES] __attribute__((aligned(64)));
+    lanes at = lanes_where(wanted, cell_number(f->volume, p[0], p[1], p[2]));
+    if (f->leap_margin == 0) {
+        lanes cell = gather_words(f->volume->cells, at);
+        wanted = mask_less_those(wanted, mask_high(cell));
+    }
+    at = at * WIDE_APRON + (p[0] >> 16 & 7u) + (p[1] >> 16 & 7u) * 9u +
+         (p[2] >> 16 & 7u) * 81u;
+    lanes_spill(i,
+                lanes_select(wanted, at, lanes_of((uint32_t)c->aprons_size)));
+    return mean_of_cubes(c->emission, 9, i, weights_of(p[0], p[1], p[2]));
+}
+
 /* emission_at, of the samples that are number n of the rays from `ray` on. In
  * an empty cell the core does not ask unless a lookup of density, too, may find
  * what is beyond its faces: elsewhere one voxel, wherever moved to, is 0. */
@@ -136,7 +154,9 @@ LANES_INLINE lanes emissions_at(const struct brume_frame *f,
 {
     lanes moved[3] = {{0}};
     if (f->kernel & 4u)
-        return emission_mixes(f, p, wanted);
+        return b->copy != NULL && b->copy->emission != NULL
+                   ? emission_copied(f, b->copy, p, wanted)
+                   : emission_mixes(f, p, wanted);
     if (f->lit.stochastic)
         moves_of(moved, b, ray, n);
     return emission_codes(f->volume, p[0] + moved[0], p[1] + moved[1],
