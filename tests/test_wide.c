@@ -268,6 +268,38 @@ static void check_fog_scene(const struct brume_scene *s,
                   wide_name(kernels[k]), what);
 }
 
+/* Fog so thin that it takes nothing: then a sample is lit by it, which counts
+ * for the directions that the sky is sampled in, or not, if it might glow. */
+static void check_thin_fog(const struct test_volumes *volumes)
+{
+    static int8_t ways[3 * 64];
+    static const struct brume_direction_table k_table = {ways, 3, 3, 0};
+    static const struct brume_fog k_fog = {.density = 1, .far = 3000u << 16};
+    static const uint32_t k_colour[256][3] = {{0}};
+    static const struct brume_lighting k_light = {
+        .sun_colour = {0x10000, 0x10000, 0x10000},
+        .fog = &k_fog,
+        .ambient = BRUME_AMBIENT_CONSTANT,
+        .ambient_colour = {{0x10000, 0x10000, 0x10000}},
+        .visibility = BRUME_SKY_SAMPLED,
+        .visibility_samples = 4,
+        .visibility_step = 0x20000,
+        .directions = &k_table,
+        .emission_colour = k_colour,
+        .emission_scale = (uint64_t)1 << 32};
+    for (int i = 0; i < 3 * 64; i++) /* of any length that is not 0 */
+        ways[i] = (int8_t)(1 + i * 37 % 90);
+    for (int i = 0; i < volumes->count; i++) {
+        const struct brume_volume *v = &volumes->item[i].volume;
+        struct brume_scene s;
+        if (v->emission == NULL)
+            continue;
+        fog_scene(&s, v, &k_light, 24);
+        s.min_density = 0x40000000u;
+        check_fog_scene(&s, v, "fog that takes nothing, and emission");
+    }
+}
+
 /* Light samples so far away that they do not fit a word: seen from outside of
  * the pool, one that was taken all the same could come to lie in it. And rays
  * with more samples outside than are found by adding up. */
@@ -582,6 +614,7 @@ int main(int argc, char **argv)
     check_refusals(&volumes);
     check_few();
     check_fog(&volumes);
+    check_thin_fog(&volumes);
     check_caches(&volumes);
     check_random(&volumes);
     check_scenes(&volumes);
