@@ -33,8 +33,7 @@ END {
     for (i = 1; i <= n; i++) {
         plain = order[i]
         copied = sub(/-copy$/, "", plain)
-        loads = copied ? (words > 1 ? 2 : 1) * lookups : \
-            lookups + words * in_bricks
+        loads = copied ? words * lookups : lookups + words * in_bricks
         word = (plain in kind) ? ns[kind[plain]] : ns["load"]
         near = (loads + 3 * lit) * word / 1e6
         t = ms[order[i]]

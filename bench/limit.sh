@@ -39,9 +39,9 @@ part_limit()
 
 # Kernels on one scene against what their loads cost. In L1: per lookup a
 # cell's word; in a brick one word more, or four rows of two voxels for
-# trilinear. From a copy it is one word for all, or two for trilinear. Per lit
-# sample an opacity and two halves of an exponential. Replayed: the cells' and
-# voxels' words at the places of this very frame.
+# trilinear. From a copy these alone, but for every lookup. Per lit sample an
+# opacity and two halves of an exponential. Replayed: the cells' and voxels'
+# words at the places of this very frame.
 limit_of()
 {
     case $1 in
