@@ -399,15 +399,15 @@ test_profile()
     check "--profile: heads, a row for each frame, and the sum" \
         same "$(sed 's/ \{2,\}.*//' "$err" | tr '\n' ' ')" \
         "ms frame 0 frame 1 frame 2 all "
-    check "the passes" grep -Eqx "ms +open +begin +copy +march +store +resolve \
+    check "the passes" grep -Eqx "ms +open +begin +cache +copy +march +store +resolve \
 +show +pack +encode +write +busy +clock +march" "$err"
     # shellcheck disable=SC2016
     check "the march's share is of the sum" awk '
         /^all/ { sum = 0
-            for (i = 2; i <= 11; i++) sum += $i
-            share = 100 * $5 / sum
-            bad = sum - $12 > 0.1 || $12 - sum > 0.1 ||
-                share - $14 > 1 || $14 - share > 1 || $5 <= 0 || $7 <= 0 }
+            for (i = 2; i <= 12; i++) sum += $i
+            share = 100 * $6 / sum
+            bad = sum - $13 > 0.1 || $13 - sum > 0.1 ||
+                share - $15 > 1 || $15 - share > 1 || $6 <= 0 || $8 <= 0 }
         END { exit bad }' "$err"
 }
 
