@@ -17,17 +17,13 @@ LANES_INLINE lanes baked_skies(const struct brume_frame *f,
     struct dense g = {
         v->sky, {v->cell_count[0], v->cell_count[1], v->cell_count[2]}, false};
     lanes p[3];
-    queued_positions(p, f, &b->queue, at);
-    if (f->lit.fog.on) /* hold_in_pool */
-        for (int i = 0; i < 3; i++) {
-            lanes at_low = lanes_of(brume_half_voxel(f));
-            lanes q = lanes_load(b->queue.p[i] + at);
-            q = lanes_min(q, lanes_of(f->limit[i] - 1u));
-            q = lanes_unless(mask_high(lanes_load(b->queue.p[i] + at)), q);
-            p[i] = q + at_low;
-        }
-    for (int i = 0; i < 3; i++)
-        p[i] = (p[i] >> 3) - 0x8000u;
+    for (int i = 0; i < 3; i++) {
+        p[i] = lanes_load(b->queue.p[i] + at);
+        if (f->lit.fog.on) /* hold_in_pool */
+            p[i] = lanes_unless(mask_high(p[i]),
+                                lanes_min(p[i], lanes_of(f->limit[i] - 1u)));
+        p[i] = ((p[i] + brume_half_voxel(f)) >> 3) - 0x8000u;
+    }
     return lanes_mul_hi(dense_lanes(b, &g, p, true) << 8,
                         lanes_of(1077952577u));
 }
