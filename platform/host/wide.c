@@ -30,26 +30,16 @@ wide_sums wide_march_avx512_sums MAY_BE_LEFT_OUT;
 static const char *const k_names[WIDE_KERNELS] = {"scalar", "avx2", "avx512",
                                                   "generic"};
 
-/* The march of a kernel, or NULL. */
-static wide_march *march_of(enum wide_kernel kernel)
-{
-    switch (kernel) {
-    case WIDE_AVX2: return wide_march_avx2;
-    case WIDE_AVX512: return wide_march_avx512;
-    case WIDE_GENERIC: return wide_march_generic;
-    default: return NULL;
-    }
-}
+/* What a kernel is compiled to; NULL what it is not. */
+struct code {
+    wide_march *march;
+    wide_sums *sums;
+};
 
-static wide_sums *sums_of(enum wide_kernel kernel)
-{
-    switch (kernel) {
-    case WIDE_AVX2: return wide_march_avx2_sums;
-    case WIDE_AVX512: return wide_march_avx512_sums;
-    case WIDE_GENERIC: return wide_march_generic_sums;
-    default: return NULL;
-    }
-}
+static const struct code k_code[WIDE_KERNELS] = {
+    [WIDE_AVX2] = {wide_march_avx2, wide_march_avx2_sums},
+    [WIDE_AVX512] = {wide_march_avx512, wide_march_avx512_sums},
+    [WIDE_GENERIC] = {wide_march_generic, wide_march_generic_sums}};
 
 static bool processor_has(enum wide_kernel kernel)
 {
@@ -71,7 +61,7 @@ static bool processor_has(enum wide_kernel kernel)
 bool wide_has(enum wide_kernel kernel)
 {
     return kernel == WIDE_SCALAR ||
-           (march_of(kernel) != NULL && processor_has(kernel));
+           (k_code[kernel].march != NULL && processor_has(kernel));
 }
 
 enum wide_kernel wide_best(void)
@@ -101,7 +91,7 @@ int wide_march_copy_rect(enum wide_kernel kernel, const struct wide_copy *copy,
                          unsigned y, unsigned w, unsigned h,
                          struct brume_radiance *out, size_t stride)
 {
-    wide_march *march = wide_has(kernel) ? march_of(kernel) : NULL;
+    wide_march *march = wide_has(kernel) ? k_code[kernel].march : NULL;
     /* The scalar one checks a rectangle, too: an empty one of this place. */
     int error = brume_march_rect(frame, x, y, w, march ? 0 : h, out, stride);
     if (error != BRUME_OK || march == NULL)
@@ -148,7 +138,7 @@ int wide_cache_rows(enum wide_kernel kernel, const struct wide_copy *copy,
                     const struct brume_frame *frame, uint32_t row,
                     uint32_t rows)
 {
-    wide_sums *sums = wide_has(kernel) ? sums_of(kernel) : NULL;
+    wide_sums *sums = wide_has(kernel) ? k_code[kernel].sums : NULL;
     if (frame != NULL &&
         (frame->lit.light != BRUME_UNIFORM || frame->lit.stochastic))
         sums = NULL;

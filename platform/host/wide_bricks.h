@@ -29,8 +29,8 @@ struct lookups {
     uint32_t y[LOOKUPS][WIDE_LANES];
     uint32_t z[LOOKUPS][WIDE_LANES];
     uint32_t weight[LOOKUPS][WIDE_LANES]; /* bytes, trilinear */
-    /* Trilinear lookups between voxels of several bricks, close together: where
-     * they are, and their place in d. */
+    /* Trilinear lookups between voxels of several bricks, close together: what
+     * says where they are, and last their place in d. */
     uint32_t apart[4][(LOOKUPS + 1) * WIDE_LANES], apart_count;
 } __attribute__((aligned(64)));
 
@@ -249,15 +249,14 @@ LANES_INLINE lanes_mask on_high_faces(lanes x, lanes y, lanes z)
         mask_or(mask_equal(y & last, last), mask_equal(z & last, last)));
 }
 
-/* Group g's lookups of m are done later, by look_up_apart. A third of them all
+/* Group g's lookups of m are done later, by n words each. A third of them all
  * need voxels of several bricks, so that most vectors have some. */
-LANES_INLINE void set_apart(struct lookups *l, uint32_t g, lanes x, lanes y,
-                            lanes z, lanes_mask m)
+LANES_INLINE void set_apart(struct lookups *l, uint32_t g, const lanes *word,
+                            int n, lanes_mask m)
 {
     uint32_t at = l->apart_count;
-    lanes_pack(l->apart[0] + at, x, m);
-    lanes_pack(l->apart[1] + at, y, m);
-    lanes_pack(l->apart[2] + at, z, m);
+    for (int i = 0; i < n; i++)
+        lanes_pack(l->apart[i] + at, word[i], m);
     lanes_pack(l->apart[3] + at, lanes_count() + g * WIDE_LANES, m);
     l->apart_count = at + (uint32_t)__builtin_popcount(mask_bits(m));
 }
@@ -272,12 +271,10 @@ LANES_INLINE void put_apart(struct lookups *l, uint32_t at, uint32_t n,
         to[l->apart[3][at + i]] = d[i];
 }
 
-/* Positions of these, and how many they are. */
-LANES_INLINE uint32_t apart_at(const struct lookups *l, uint32_t at, lanes p[3])
+/* How many there are from number `at` on, at most a vector. */
+LANES_INLINE uint32_t apart_from(const struct lookups *l, uint32_t at)
 {
     uint32_t left = l->apart_count - at;
-    for (int i = 0; i < 3; i++)
-        p[i] = lanes_load(l->apart[i] + at);
     return left < WIDE_LANES ? left : WIDE_LANES;
 }
 
@@ -301,7 +298,7 @@ LANES_INLINE void look_up_trilinear(struct lookups *l, uint32_t n,
             lanes_mask rest = k.clamp ? mask_or(brick, near) : near;
             brick = mask_less_those(brick, rest);
             if (mask_any(rest)) {
-                set_apart(l, g, x, y, z, rest);
+                set_apart(l, g, (const lanes[3]){x, y, z}, 3, rest);
                 /* Leaps count from a cell without density. */
                 lanes_store(l->cell[g], lanes_select(rest, lanes_of(0), cell));
             }
@@ -311,10 +308,12 @@ LANES_INLINE void look_up_trilinear(struct lookups *l, uint32_t n,
         lanes_store(l->d[g], d);
     }
     for (uint32_t at = 0; at < l->apart_count; at += WIDE_LANES) {
-        lanes p[3];
-        uint32_t some = apart_at(l, at, p);
+        uint32_t some = apart_from(l, at);
         put_apart(l, at, some,
-                  mix_anywhere(f, p[0], p[1], p[2], mask_first(some), k));
+                  mix_anywhere(f, lanes_load(l->apart[0] + at),
+                               lanes_load(l->apart[1] + at),
+                               lanes_load(l->apart[2] + at), mask_first(some),
+                               k));
     }
 }
 

@@ -81,6 +81,13 @@ LANES_INLINE lanes z_in_pages(lanes z, lanes plane)
     return (z >> 8 & 3840u) + (z >> 20) * plane;
 }
 
+/* Voxel at a position of a cell, in the aprons of all. */
+LANES_INLINE lanes number_in_aprons(lanes cell, lanes x, lanes y, lanes z)
+{
+    static const struct kernel k = KERNEL_OF(BRUME_U8, 1, true, false, false);
+    return cell * WIDE_APRON + voxel_number(x, y, z, k);
+}
+
 /* Cubes of eight voxels in aprons; of those with ranges the cell, too, and
  * whether the cube is of several bricks. */
 LANES_INLINE void want_cube(struct lookups *l, uint32_t g,
@@ -88,8 +95,7 @@ LANES_INLINE void want_cube(struct lookups *l, uint32_t g,
                             lanes_mask wanted, struct kernel k)
 {
     lanes cell = (z >> 19) * c->plane + (y >> 19) * c->row + (x >> 19);
-    lanes at = cell * WIDE_APRON + (x >> 16 & 7u) + (y >> 16 & 7u) * 9u +
-               (z >> 16 & 7u) * 81u;
+    lanes at = number_in_aprons(cell, x, y, z);
     lanes_store(l->at[g], lanes_select(wanted, at, c->end));
     lanes_store(l->weight[g], weights_of(x, y, z));
     if (!needs_ranges(k))
@@ -147,7 +153,7 @@ LANES_INLINE lanes trilinear_copied(struct lookups *l, uint32_t g,
     lanes cell = lanes_load(l->cell[g]), at = lanes_load(l->at[g]);
     lanes range = gather_words(c->ranges, cell & ~SEVERAL_BRICKS);
     if (sets_apart(k) && mask_any(mask_high(cell)))
-        set_apart(l, g, at, w, w, mask_high(cell));
+        set_apart(l, g, (const lanes[2]){at, w}, 2, mask_high(cell));
     return lanes_where(mask_less(at, c->end), density_of(range, d, 8, k));
 }
 
@@ -156,10 +162,11 @@ LANES_INLINE void copied_apart(struct lookups *l, const struct copied *c,
 {
     for (uint32_t n = 0; n < l->apart_count; n += WIDE_LANES) {
         uint32_t at[WIDE_LANES] __attribute__((aligned(64)));
-        lanes p[3];
-        uint32_t some = apart_at(l, n, p);
-        lanes_spill(at, lanes_where(mask_first(some), p[0]));
-        put_apart(l, n, some, mix_halves(c, at, p[1], k));
+        uint32_t some = apart_from(l, n);
+        lanes_spill(at,
+                    lanes_where(mask_first(some), lanes_load(l->apart[0] + n)));
+        put_apart(l, n, some,
+                  mix_halves(c, at, lanes_load(l->apart[1] + n), k));
     }
 }
 

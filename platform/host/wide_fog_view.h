@@ -31,11 +31,8 @@ LANES_INLINE void begin_parts(const struct brume_frame *f, struct patch *b,
     n = lanes_select(inside, n, lanes_min(n, lanes_of(MOST_MOVES)));
     n = lanes_where(mask_less(at, all), n);
     lanes t = lanes_load(b->t + ray) + at * f->step;
-    for (int i = 0; i < 3; i++) { /* brume_ray_place */
-        lanes unit = lanes_load(b->lit.unit[i] + ray), m = magnitudes(unit);
-        lanes low = m * t;
-        lanes way = (lanes_mul_hi(m, t) << 2 | low >> 30) + (low >> 29 & 1u);
-        lanes p = with_signs(way, signs_of(unit)) + (uint32_t)f->eye[i];
+    for (int i = 0; i < 3; i++) {
+        lanes p = places_along(f, i, lanes_load(b->lit.unit[i] + ray), t);
         p = lanes_select(inside, lanes_load(b->fog.enter[i] + ray), p);
         p = lanes_select(ended, p, lanes_load(b->p[i] + ray));
         lanes_store(b->p[i] + ray, p);

@@ -138,8 +138,7 @@ LANES_INLINE lanes emission_copied(const struct brume_frame *f,
         lanes cell = gather_words(f->volume->cells, at);
         wanted = mask_less_those(wanted, mask_high(cell));
     }
-    at = at * WIDE_APRON + (p[0] >> 16 & 7u) + (p[1] >> 16 & 7u) * 9u +
-         (p[2] >> 16 & 7u) * 81u;
+    at = number_in_aprons(at, p[0], p[1], p[2]);
     lanes_spill(i,
                 lanes_select(wanted, at, lanes_of((uint32_t)c->aprons_size)));
     return mean_of_cubes(c->emission, 9, i, weights_of(p[0], p[1], p[2]));

@@ -92,6 +92,14 @@ LANES_INLINE void put_doubled(struct ways *w, const lanes first[3], uint32_t k)
     w->weight[k] = 1u << k;
 }
 
+/* Of samples outside of the pool, only those that `enter` have ways. */
+LANES_INLINE void keep_outside(struct ways *w, lanes_mask outside,
+                               lanes_mask enter)
+{
+    w->outside = mask_and(outside, enter);
+    w->wanted = mask_or(mask_less_those(w->wanted, outside), w->outside);
+}
+
 /* In fog samples may be outside of the pool, and of these only those that see
  * the sun through it have ways. */
 LANES_INLINE void leave_out_ways(const struct brume_frame *f, struct patch *b,
@@ -104,8 +112,7 @@ LANES_INLINE void leave_out_ways(const struct brume_frame *f, struct patch *b,
         return;
     for (int i = 0; i < 3; i++)
         p[i] = lanes_load(b->queue.p[i] + at);
-    w->outside = mask_and(outside, ways_to_pool(f, p, &t_in));
-    w->wanted = mask_or(mask_less_those(w->wanted, outside), w->outside);
+    keep_outside(w, outside, ways_to_pool(f, p, &t_in));
 }
 
 /// Octaves ///

@@ -179,12 +179,34 @@ static inline void directions_of(lanes d[3], const struct brume_frame *f,
 
 /// Pool ///
 
-/* time_of. Shifts by 33 - shift are two, as shift may be 1. */
-LANES_INLINE lanes times_of(lanes distance, lanes reciprocal, lanes shift)
+/* brume_ray_place along axis i */
+LANES_INLINE lanes places_along(const struct brume_frame *f, int i, lanes unit,
+                                lanes t)
 {
-    lanes high = lanes_mul_hi(distance, reciprocal);
-    lanes low = distance * reciprocal;
-    lanes up = shift - 1u, down = 32u - shift;
+    lanes m = magnitudes(unit), low = m * t;
+    lanes way = (lanes_mul_hi(m, t) << 2 | low >> 30) + (low >> 29 & 1u);
+    return with_signs(way, signs_of(unit)) + (uint32_t)f->eye[i];
+}
+
+/* pace_of, of speeds that may be 0 */
+struct pace_lanes {
+    lanes reciprocal, shift;
+};
+
+LANES_INLINE struct pace_lanes paces_of(lanes speed)
+{
+    struct pace_lanes pace;
+    pace.shift = lanes_min(lanes_leading_zeros(speed), lanes_of(31));
+    pace.reciprocal = reciprocals(speed << pace.shift | 0x80000000u);
+    return pace;
+}
+
+/* time_of. Shifts by 33 - shift are two, as shift may be 1. */
+LANES_INLINE lanes times_of(lanes distance, struct pace_lanes pace)
+{
+    lanes high = lanes_mul_hi(distance, pace.reciprocal);
+    lanes low = distance * pace.reciprocal;
+    lanes up = pace.shift - 1u, down = 32u - pace.shift;
     lanes_mask fits = mask_equal(high >> 1 >> down, lanes_of(0));
     return lanes_select(fits, high << up | low >> 1 >> down,
                         lanes_of(0xffffffffu));
@@ -213,15 +235,13 @@ static inline lanes_mask clip_lanes(const struct brume_frame *f,
             may = mask_and(may, mask_less_those(moves, backwards));
         if (above)
             may = mask_and(may, backwards);
-        lanes shift = lanes_min(lanes_leading_zeros(speed), lanes_of(31));
-        lanes reciprocal = reciprocals(speed << shift | 0x80000000u);
+        struct pace_lanes pace = paces_of(speed);
         lanes t = times_of(
-            lanes_select(backwards, lanes_of(to_low), lanes_of(to_high)),
-            reciprocal, shift);
+            lanes_select(backwards, lanes_of(to_low), lanes_of(to_high)), pace);
         *t_out = lanes_min(*t_out, lanes_select(moves, t, *t_out));
         if (!below && !above)
             continue;
-        t = times_of(lanes_of(below ? to_low : to_high), reciprocal, shift);
+        t = times_of(lanes_of(below ? to_low : to_high), pace);
         *t_in = lanes_select(mask_and(moves, mask_less(*t_in, t)), t, *t_in);
     }
     lanes_mask late = mask_and(mask_less(*t_out, *t_in),
@@ -248,9 +268,7 @@ static inline void enter_lanes(struct rays *r, const struct brume_frame *f,
     k -= lanes_min(k, lanes_of(1));
     lanes t = k * step + lanes_mul_hi(jitter << 16, step);
     for (int i = 0; i < 3; i++) {
-        lanes m = magnitudes(unit[i]), low = m * t;
-        lanes way = (lanes_mul_hi(m, t) << 2 | low >> 30) + (low >> 29 & 1u);
-        p[i] = with_signs(way, signs_of(unit[i])) + (uint32_t)f->eye[i];
+        p[i] = places_along(f, i, unit[i], t);
         r->move[i] = mul_round_lanes(unit[i], step, 2);
     }
     lanes_mask outside =
@@ -353,9 +371,7 @@ LANES_INLINE lanes times_of_edge(const struct brume_frame *f,
         lanes room = lanes_select(mask_high(unit[i]),
                                   lanes_of(edge + (uint32_t)f->eye[i]),
                                   lanes_of(edge - (uint32_t)f->eye[i]));
-        lanes shift = lanes_min(lanes_leading_zeros(speed), lanes_of(31));
-        lanes t =
-            times_of(room, reciprocals(speed << shift | 0x80000000u), shift);
+        lanes t = times_of(room, paces_of(speed));
         most = lanes_select(mask_less(lanes_of(0), speed), lanes_min(most, t),
                             most);
     }

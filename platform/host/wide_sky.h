@@ -64,13 +64,12 @@ static lanes sky_transmittances(lanes way[3], const struct brume_frame *f,
         }
     }
     begin_ways(w, n, f->lit.sky_samples);
-    w->outside = mask_and(queued_outside(f, b, at), w->wanted);
-    if (mask_any(w->outside)) {
+    lanes_mask outside = mask_and(queued_outside(f, b, at), w->wanted);
+    if (mask_any(outside)) {
         for (int i = 0; i < 3; i++)
             p[i] = lanes_load(b->queue.p[i] + at);
-        lanes_mask away = mask_and(w->outside, lead_away(f, p, way));
-        w->wanted = mask_less_those(w->wanted, away);
-        w->outside = mask_less_those(w->outside, away);
+        keep_outside(w, outside,
+                     mask_less_those(outside, lead_away(f, p, way)));
     }
     for (uint32_t k = 0; k < w->count; k++)
         put_doubled(w, way, k);
